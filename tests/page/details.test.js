@@ -26,7 +26,7 @@ after(async () => {
 test("a search shows what it is doing, who leads, and who computes", async () => {
   await page.goto(`${service.url}/#/studies/${study}/live`);
   await page.getByRole("list", { name: "Leaders so far" }).locator("li").first().waitFor({ timeout: STUDY_MS });
-  assert.match(await page.getByText("At present:").textContent(), /^At present: [a-z]/);
+  assert.match(await page.getByText("The search now").textContent(), /^The search now [a-z].*\.$/);
   await page.getByRole("region", { name: "Workers" }).waitFor();
   await shot(page, "details-board");
   await page.getByRole("link", { name: "Read the story" }).waitFor({ timeout: STUDY_MS });
@@ -69,6 +69,9 @@ test("an effect that was added is taken back, and added again without being comp
   const before = await service.get(`/v1/studies/${study}`);
   assert.equal(before.ledger.length, 1);
   assert.notEqual(before.current, added);
+  const weighed = async (id) => (await service.post(`/v1/calibrations/${id}/predict`, { sweep: "slip=0.1:0.3:2", draws: 20 })).models.map((model) => model.calibration);
+  assert.deepEqual(await weighed(before.current), [before.current]);
+  assert.deepEqual(await weighed(added), [added]);
   // The rows of the list follow, and the results of what was taken back stay readable.
   const [listed] = await service.get("/v1/studies");
   assert.ok(!listed.calibrations.includes(added));

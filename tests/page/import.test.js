@@ -118,7 +118,15 @@ test("the runs that the words hold out judge the calibration", async () => {
   const experiment = await readFile("tests/data/nothing-hidden/experiment.toml", "utf8");
   const job = (await readFile("examples/import-german/job.toml", "utf8")).replace("[sampler]", '[sampler]\nalgorithm = "lm"').replace(/\[discovery\][^[]*/, "");
   await files(buffer("experiment.toml", experiment), buffer("job.toml", job));
-  await page.getByRole("button", { name: "Start the calibration" }).click();
+  await page.getByLabel("Tags").fill("dry");
+  // A description that is not kept is no failed submission: a second click would begin a second study.
+  await page.route("**/details", (route) => route.abort());
+  const start = page.getByRole("button", { name: "Start the calibration" });
+  await start.click();
+  await page.getByText("The calibration runs, but its author and tags were not kept").waitFor();
+  assert.ok(await start.isDisabled());
+  await page.unroute("**/details");
+  await page.getByRole("link", { name: "See it run" }).click();
   await page.waitForURL(/studies\/\d+\/live/);
   const study = await service.finished(studyOf(page));
   assert.equal(study.state, "finished");

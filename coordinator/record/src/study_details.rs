@@ -20,7 +20,7 @@ pub struct StudyDetails {
     pub author: Option<String>,
     /// Words by which it is found.
     pub tags: Vec<String>,
-    /// Remark of any length; null: none.
+    /// Remark of at most 10,000 characters; null: none.
     pub note: Option<String>,
 }
 

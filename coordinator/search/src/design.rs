@@ -84,9 +84,11 @@ fn reach(values: &[f64], limits: Option<[f64; 2]>) -> Vec<f64> {
     let within = |value: f64| limits.map_or(value, |[low, high]| value.min(high).max(low));
     let (least, greatest) = (within(least), within(greatest));
     let share = |k: usize| k as f64 / (LEVELS - 1) as f64;
-    (0..LEVELS)
-        .map(|k| within(two_digits(least * libm::pow(greatest / least, share(k)))))
-        .collect()
+    let level = |k: usize| within(two_digits(least * libm::pow(greatest / least, share(k))));
+    let mut levels: Vec<f64> = (0..LEVELS).map(level).collect();
+    // Within narrow limits levels coincide; the same run is proposed once.
+    levels.dedup();
+    levels
 }
 
 /// Returns how far each run lies beyond the measured range of wheel load and rim speed: the logarithm of the ratio, 0 within the
@@ -192,6 +194,8 @@ mod tests {
     #[test]
     fn what_is_proposed_stays_within_the_limits_that_the_rig_states() {
         assert_eq!(reach(&[90.0; 6], Some([50.0, 120.5])), [50.0, 78.0, 120.5]);
+        assert_eq!(reach(&[90.0; 6], Some([90.0, 90.0])), [90.0]);
+        assert_eq!(reach(&[90.0; 6], Some([90.0, 91.0])), [90.0, 91.0]);
         let (job, mut files, _) = crate::fixture::read("examples/hidden-effect");
         let of = |files: &shared::file::FileSet| proposed(&crate::fixture::spec_of(&job, files).unwrap());
         let free = of(&files);

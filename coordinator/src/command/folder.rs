@@ -164,8 +164,8 @@ impl Folder {
     /// Brings a study to its end, writes its results and prints them.
     pub(super) async fn finish(mut self, study: i64, details: Details) -> anyhow::Result<()> {
         self.bring_to_end(study).await?;
-        let reader = self.service.store().reader();
-        let rows = reader.study(study).await?;
+        // What was taken back is cancelled where it was not over, which is no failure of the study.
+        let (rows, _) = self.service.store().reader().members_and_withdrawn(study).await?;
         if let Some(row) = rows.iter().find(|row| row.state == CalibrationState::Finished) {
             let rounds = self.service.search_rounds(study).await?;
             self.write_results(row.id, &rounds).await?;

@@ -136,7 +136,8 @@ async fn what_if(
 /// Takes back what was added to a study.
 ///
 /// Takes a calibration of an added effect, law or further runs out of its study, with all that follows from it; what is not
-/// over is cancelled. Its results stay readable by its number, and the same addition takes it in again.
+/// over is cancelled. Its results stay readable by its number. The same addition takes it in again with its point estimates
+/// and its search; what else followed from it stays out.
 #[utoipa::path(post, path = "/calibrations/{id}/withdraw", operation_id = "withdraw_calibration", tag = "studies",
     params(("id" = i64, Path)), responses(
     (status = 200, description = "what is no longer part of the study", body = Withdrawn),

@@ -38,7 +38,8 @@ pub(super) struct WithArchived {
 /// changed are null until they are computed. The answer has a tag, and is not sent again to who has it.
 #[utoipa::path(get, path = "/studies", operation_id = "list_studies", tag = "studies",
     params(("archived" = Option<bool>, Query, description = "whether archived studies are listed too")), responses(
-    (status = 200, description = "studies with state, error and verdict", body = Vec<StudyListItem>)))]
+    (status = 200, description = "studies with state, error and verdict", body = Vec<StudyListItem>),
+    (status = 304, description = "the client has this answer: `If-None-Match` names its tag")))]
 async fn list(
     State(service): State<Service>,
     Query(which): Query<WithArchived>,

@@ -156,15 +156,11 @@ pub(super) async fn finished_study(
         };
         group.push(finished_with(reader, row, &mut experiments).await?);
     }
+    let (_, withdrawn) = reader.members_and_withdrawn(row.study).await?;
     let state = match unfinished {
         Some(row) => row.state,
         // The next step of a study is unfinished work, although it has not begun.
-        None if next_step_from(reader, &with_withdrawn(reader, row.study, rows).await?)
-            .await?
-            .is_some() =>
-        {
-            CalibrationState::Running
-        }
+        None if next_step_from(reader, rows, &withdrawn).await?.is_some() => CalibrationState::Running,
         None => CalibrationState::Finished,
     };
     Ok(Study {
@@ -180,24 +176,12 @@ pub(super) async fn finished_study(
     })
 }
 
-/// Returns the given members of a study together with those that were taken out of it, because what was taken back is no step to be taken
-/// again. A member that joins meanwhile is left out.
-async fn with_withdrawn(
-    reader: &Reader,
-    study: i64,
-    rows: &[CalibrationRow],
-) -> Result<Vec<CalibrationRow>, ServiceError> {
-    let withdrawn = reader.withdrawn().await?;
-    let mut all = reader.study(study).await?;
-    all.retain(|row| withdrawn.contains(&row.id) || rows.iter().any(|known| known.id == row.id));
-    Ok(all)
-}
-
 impl Service {
-    /// Reads the finished searches of a study.
+    /// Reads the finished searches of a study, without those that were taken out of it.
     pub async fn search_rounds(&self, study: i64) -> Result<Vec<DiscoveryRound>, ServiceError> {
         let reader = self.store().reader();
-        search_rounds(&reader, &reader.study(study).await?).await
+        let (members, _) = reader.members_and_withdrawn(study).await?;
+        search_rounds(&reader, &members).await
     }
 }
 

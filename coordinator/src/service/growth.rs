@@ -58,9 +58,7 @@ impl Service {
         calibration: Option<i64>,
     ) -> Result<RunsAdded, ServiceError> {
         let _growing = self.growing.lock().await;
-        let withdrawn = self.store().reader().withdrawn().await?;
-        let mut rows = self.store().reader().study(study).await?;
-        rows.retain(|row| !withdrawn.contains(&row.id));
+        let (rows, _) = self.store().reader().members_and_withdrawn(study).await?;
         let (mut ledger, mut beside) = (None, None);
         let passed_over = passed_over(&rows);
         let is_candidate = |row: &&CalibrationRow| match calibration {

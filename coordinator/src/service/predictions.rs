@@ -28,7 +28,8 @@ const DECISION: &str = "decision.toml";
 const JOB: &str = "job.toml";
 
 impl Service {
-    /// Predicts planned runs by the posterior of a calibration and of the other models of its study.
+    /// Predicts planned runs by the posterior of a calibration and of the other models of its study. A model that was taken out of the
+    /// study has no weight.
     ///
     /// # Errors
     /// [`ServiceError`]: the calibration has no posterior, or the plan is malformed.
@@ -61,7 +62,12 @@ impl Service {
         // The semaphore is never closed. A thread that computes cannot be stopped, so it keeps the permit until it has ended.
         let turn = ONE_AT_A_TIME.acquire().await;
         let reader = self.store().reader();
-        let study = finished_study(&reader, &row, &reader.study(row.study).await?).await?;
+        let (mut members, _) = reader.members_and_withdrawn(row.study).await?;
+        // What was taken back predicts by itself alone, and is weighed with no other model.
+        if !members.iter().any(|member| member.id == row.id) {
+            members = vec![row.clone()];
+        }
+        let study = finished_study(&reader, &row, &members).await?;
         let computed = tokio::task::spawn_blocking(move || {
             let _turn = turn;
             compute(study)

@@ -17,7 +17,8 @@ impl Service {
     /// [`ServiceError`] where a member cannot be read.
     pub async fn next_step(&self, study: i64) -> Result<Option<StudyStep>, ServiceError> {
         let reader = self.store().reader();
-        next_step_from(&reader, &reader.study(study).await?).await
+        let (rows, withdrawn) = reader.members_and_withdrawn(study).await?;
+        next_step_from(&reader, &rows, &withdrawn).await
     }
 
     /// Reads the record of the search for an effect that the model of a calibration lacks.
@@ -37,10 +38,11 @@ impl Service {
     }
 }
 
-/// Determines the next step of a study with these members.
+/// Determines the next step of a study with these members, from which others were taken back.
 pub(super) async fn next_step_from(
     reader: &Reader,
     rows: &[CalibrationRow],
+    withdrawn: &[CalibrationRow],
 ) -> Result<Option<StudyStep>, ServiceError> {
     let Some(lead) = rows.first() else { return Ok(None) };
     let settings = Job::parse("job.toml", &lead.job.toml)?.discovery;
@@ -56,5 +58,5 @@ pub(super) async fn next_step_from(
             findings.ledger.insert(row.id);
         }
     }
-    Ok(next_step(settings, rows, &findings))
+    Ok(next_step(settings, rows, withdrawn, &findings))
 }

@@ -10,7 +10,8 @@ use farm::Control;
 
 impl Service {
     /// Takes a calibration that was added to a study out of it, with all that follows from it; what is not over is cancelled. Returns the
-    /// study and what was taken out. Adding the same to the same calibration again takes it in as it was.
+    /// study and what was taken out. Adding the same to the same calibration again takes in the addition, with its point estimates and
+    /// searches, without computing it anew; what else followed from it stays out.
     ///
     /// # Errors
     /// [`ServiceError::Submitted`] for a calibration that the study began with.
@@ -33,13 +34,17 @@ impl Service {
         Ok((row.study, ids))
     }
 
-    /// Takes a calibration in again, with its searches.
+    /// Takes a calibration in again, with the point estimates and the searches of its model that did not end without a result.
     pub(super) async fn take_in_again(&self, rows: &[CalibrationRow], id: i64) -> Result<(), ServiceError> {
+        use shared::api::CalibrationState::{Cancelled, Failed};
         if !self.store().reader().withdrawn().await?.contains(&id) {
             return Ok(());
         }
+        let lineage = Lineage::new(rows);
         let own = |row: &&CalibrationRow| {
-            row.id == id || (row.membership.is_search() && row.membership.parent == Some(id))
+            let searched = row.membership.parent.filter(|_| row.membership.is_search());
+            let is_of_model = lineage.model_of(searched.unwrap_or(row.id)) == lineage.model_of(id);
+            is_of_model && !matches!(row.state, Failed | Cancelled)
         };
         let ids = rows.iter().filter(own).map(|row| row.id).collect();
         Ok(self.store().writer().withdraw(ids, None).await?)

@@ -111,7 +111,7 @@ impl<'a> Lineage<'a> {
 }
 
 /// Returns whether an addition adds this effect or setting.
-fn is_part(extension: &Extension, part: &str) -> bool {
+pub(super) fn is_part(extension: &Extension, part: &str) -> bool {
     parts_of(extension).iter().any(|brought| brought == part)
 }
 

@@ -7,7 +7,7 @@ use shared::api::CalibrationState;
 use job::{Apply, DiscoverySettings};
 use record::{CalibrationRow, Change, Discovery, Extension, parts_of};
 
-use super::lineage::Lineage;
+use super::lineage::{Lineage, is_part};
 
 /// The results of the finished calibrations of a study, by their ids.
 #[derive(Debug, Clone, Default)]
@@ -42,9 +42,15 @@ pub fn most_probable(log_evidences: impl Iterator<Item = Option<f64>>) -> Option
 /// extended by the effect that its search names, up to the allowed number of effects beyond those of the first member; an effect that was
 /// dropped is neither added nor dropped again. Where a search names an effect in the place of one that the study added, that one is dropped
 /// and the other is then added, without a search between them. If the job compares several models, the study continues with the model of largest evidence.
+///
+/// # Arguments
+/// - `rows`: the members of the study.
+/// - `withdrawn`: what was taken out of it. The study goes on as without it, whatever its state, but an effect that was taken back is not
+///   added again, and one whose dropping was taken back is not dropped again.
 pub fn next_step(
     settings: DiscoverySettings,
     rows: &[CalibrationRow],
+    withdrawn: &[CalibrationRow],
     findings: &StudyFindings,
 ) -> Option<StudyStep> {
     if settings.apply == Apply::Off || rows.iter().any(|row| row.state != CalibrationState::Finished) {
@@ -62,7 +68,8 @@ pub fn next_step(
         .chain(later)
         .rfind(|row| findings.ledger.contains(&row.id))?;
     let Some(search) = lineage.search_of(last.id) else {
-        let replacing = replacing(lineage, findings, last).filter(|_| settings.apply == Apply::Auto);
+        let replacing = replacing(lineage, findings, last)
+            .filter(|extension| settings.apply == Apply::Auto && !is_taken_back(withdrawn, extension));
         return Some(match replacing {
             Some(extension) => StudyStep::Extend(last.id, extension),
             None => StudyStep::Search(last.id),
@@ -73,21 +80,38 @@ pub fn next_step(
     }
     let record = findings.searches.get(&search.id)?;
     // Effects of the submitted job are the user's choice.
-    let can_go = |effect: &&String| lineage.has_added(last.id, effect) && !lineage.has_dropped(effect);
+    let was_dropped =
+        |effect: &str| lineage.has_dropped(effect) || Lineage::new(withdrawn).has_dropped(effect);
+    let can_go = |effect: &&String| lineage.has_added(last.id, effect) && !was_dropped(effect);
     if let Some(extension) = &record.extension {
         let parts = parts_of(extension);
-        let is_dropped = parts.iter().any(|part| lineage.has_dropped(part));
+        let is_refused = parts.iter().any(|part| was_dropped(part)) || is_taken_back(withdrawn, extension);
         let is_there = parts.iter().all(|part| lineage.has_added(last.id, part));
         let replaced = record.named_replacement().map(|named| &named.in_place_of);
-        if let Some(effect) = replaced.filter(can_go).filter(|_| !is_dropped && !is_there) {
+        if let Some(effect) = replaced.filter(can_go).filter(|_| !is_refused && !is_there) {
             return Some(StudyStep::Drop(last.id, vec![effect.clone()]));
         }
-        if lineage.additions(last.id).len() < settings.max_effects && !is_dropped && !is_there {
+        if lineage.additions(last.id).len() < settings.max_effects && !is_refused && !is_there {
             return Some(StudyStep::Extend(last.id, extension.clone()));
         }
     }
     let drop: Vec<String> = record.drop.iter().filter(can_go).cloned().collect();
     (!drop.is_empty()).then_some(StudyStep::Drop(last.id, drop))
+}
+
+/// Returns whether a part of an extension was itself taken back. What was taken out with something that it followed from may be added
+/// again.
+fn is_taken_back(withdrawn: &[CalibrationRow], extension: &Extension) -> bool {
+    let parts = parts_of(extension);
+    let follows = |row: &CalibrationRow| {
+        withdrawn
+            .iter()
+            .any(|other| Some(other.id) == row.membership.parent)
+    };
+    withdrawn.iter().any(|row| match &row.membership.change {
+        Some(Change::Add(added)) => !follows(row) && parts.iter().any(|part| is_part(added, part)),
+        _ => false,
+    })
 }
 
 /// Returns the effect that a search named in the place of one that this calibration was made without.
@@ -150,6 +174,16 @@ mod tests {
 
     /// Returns the next step with at most two effects, where searches found these.
     fn step(apply: Apply, rows: &[CalibrationRow], records: &[(i64, Discovery)]) -> Option<StudyStep> {
+        step_without(&[], apply, rows, records)
+    }
+
+    /// Returns the same of a study from which some calibrations were taken back.
+    fn step_without(
+        withdrawn: &[CalibrationRow],
+        apply: Apply,
+        rows: &[CalibrationRow],
+        records: &[(i64, Discovery)],
+    ) -> Option<StudyStep> {
         let settings = DiscoverySettings {
             apply,
             max_effects: 2,
@@ -160,7 +194,7 @@ mod tests {
             ledger: samples.map(|row| row.id).collect(),
             searches: records.iter().cloned().collect(),
         };
-        next_step(settings, rows, &findings)
+        next_step(settings, rows, withdrawn, &findings)
     }
 
     fn extend(id: i64, effect: &str) -> Option<StudyStep> {
@@ -300,6 +334,60 @@ mod tests {
         rows.push(search(7, 6));
         records.push((7, names(Some("a"), &[])));
         assert_eq!(step(Apply::Auto, &rows, &records), None, "it was replaced");
+    }
+
+    #[test]
+    fn what_was_taken_back_neither_stops_the_study_nor_is_extended_or_added_again() {
+        let records = [(2, names(Some("a"), &[])), (6, names(Some("b"), &[]))];
+        for state in [CalibrationState::Cancelled, CalibrationState::Finished] {
+            let withdrawn = [
+                CalibrationRow {
+                    state,
+                    ..added(3, 1, "a")
+                },
+                CalibrationRow {
+                    state,
+                    ..search(4, 3)
+                },
+            ];
+            let step = |rows: &[CalibrationRow]| step_without(&withdrawn, Apply::Auto, rows, &records);
+            let mut rows = vec![base(1)];
+            assert_eq!(step(&rows), Some(StudyStep::Search(1)), "{state:?}");
+            rows.push(search(2, 1));
+            assert_eq!(
+                step(&rows),
+                None,
+                "{state:?}: the search names what was taken back"
+            );
+            let runs = Membership::changed(Role::Sample, 1, Change::Runs(3));
+            rows.push(CalibrationRow::finished(5, runs));
+            assert_eq!(step(&rows), Some(StudyStep::Search(5)), "{state:?}");
+            rows.push(search(6, 5));
+            assert_eq!(step(&rows), extend(5, "b"), "{state:?}");
+        }
+    }
+
+    #[test]
+    fn what_followed_from_runs_that_were_taken_back_is_added_again() {
+        let runs =
+            |id: i64| CalibrationRow::finished(id, Membership::changed(Role::Sample, 1, Change::Runs(3)));
+        let withdrawn = [runs(3), search(4, 3), added(5, 3, "a")];
+        let rows = [base(1), search(2, 1), runs(6), search(7, 6)];
+        let records = [(2, names(None, &[])), (7, names(Some("a"), &[]))];
+        assert_eq!(
+            step_without(&withdrawn, Apply::Auto, &rows, &records),
+            extend(6, "a")
+        );
+    }
+
+    #[test]
+    fn an_effect_whose_dropping_was_taken_back_is_not_dropped_again() {
+        let rows = [base(1), search(2, 1), added(3, 1, "a"), search(4, 3)];
+        let records = [(2, names(Some("a"), &[])), (4, names(None, &["a"]))];
+        let drop = Some(StudyStep::Drop(3, vec!["a".into()]));
+        assert_eq!(step(Apply::Auto, &rows, &records), drop);
+        let withdrawn = [dropped(5, 3, "a")];
+        assert_eq!(step_without(&withdrawn, Apply::Auto, &rows, &records), None);
     }
 
     #[test]

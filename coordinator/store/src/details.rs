@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use record::StudyDetails;
+use record::{CalibrationRow, StudyDetails};
 
 use super::error::StoreError;
 use super::json::json;
@@ -54,6 +54,16 @@ impl Reader {
         rows.into_iter().map(read).collect()
     }
 
+    /// Reads the calibrations of a study, oldest first: those that are part of it, and those that were taken out of it.
+    pub async fn members_and_withdrawn(
+        &self,
+        study: i64,
+    ) -> Result<(Vec<CalibrationRow>, Vec<CalibrationRow>), StoreError> {
+        let withdrawn = self.withdrawn().await?;
+        let rows = self.study(study).await?.into_iter();
+        Ok(rows.partition(|row| !withdrawn.contains(&row.id)))
+    }
+
     /// Reads the calibrations that were taken out of their studies. A store of before migration 24 has none.
     pub async fn withdrawn(&self) -> Result<BTreeSet<i64>, StoreError> {
         if !self.has_column("calibrations", "withdrawn_at_ms").await? {
@@ -89,7 +99,8 @@ mod tests {
         let (stamp, rows) = stamped().await;
         assert!(rows.is_empty() && stamp != whole.0);
         assert!(reader.member_states().await.unwrap().is_empty());
-        assert_eq!(reader.study(study).await.unwrap().len(), 1);
+        let (members, withdrawn) = reader.members_and_withdrawn(study).await.unwrap();
+        assert_eq!((members.len(), withdrawn.len()), (0, 1));
         writer.withdraw(vec![calibration], None).await.unwrap();
         assert_eq!(stamped().await.0, whole.0);
         store.close().await;

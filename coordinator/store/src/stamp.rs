@@ -122,9 +122,7 @@ impl Reader {
         build: &str,
     ) -> Result<(Stamp, Vec<CalibrationRow>), StoreError> {
         let doubts = self.doubts().await?;
-        let withdrawn = self.withdrawn().await?;
-        let mut rows = self.study(study).await?;
-        rows.retain(|row| !withdrawn.contains(&row.id));
+        let (rows, _) = self.members_and_withdrawn(study).await?;
         let stamp = Stamp::new(build, rows.iter().map(|row| (row.id, row.state)), doubts);
         Ok((stamp, rows))
     }

@@ -307,8 +307,10 @@ fn check_numbers(
         let bound = format!("in [{lowest}, the greatest]");
         let is_least = least.is_finite() && least >= lowest && least <= greatest;
         require(is_least, &format!("least of {key}"), least, unit, &bound).map_err(in_rig)?;
-        let is_greatest = greatest.is_finite() && (key != "slip_range" || greatest < 1.0);
-        let bound = if key == "slip_range" { "< 1" } else { "finite" };
+        let (is_greatest, bound) = match key {
+            "slip_range" => (greatest < 1.0, "< 1"),
+            _ => (greatest.is_finite() && greatest > 0.0, "finite and > 0"),
+        };
         require(is_greatest, &format!("greatest of {key}"), greatest, unit, bound).map_err(in_rig)?;
     }
     for (name, soil) in soils {
@@ -415,5 +417,27 @@ mod tests {
         );
         assert!(refused(&format!("{text}mesh = \"a.stl\"\n")).contains("has no place here"));
         assert!(refused("[rig]\ngravity_m_s2 = 1.62\n").contains("rig"));
+    }
+
+    #[test]
+    fn a_rig_sets_some_load_and_some_speed() {
+        let check = |rig: Rig| {
+            let protocol = AveragingProtocol::default();
+            check_numbers("e.toml", &rig, &BTreeMap::new(), &protocol).map_err(|e| e.to_string())
+        };
+        let rig = |load: [f64; 2], speed: [f64; 2]| Rig {
+            wheel_load_range_n: Some(load),
+            sled_speed_range_m_s: Some(speed),
+            ..Rig::default()
+        };
+        assert_eq!(check(rig([0.0, 90.0], [0.0, 0.02])), Ok(()));
+        assert_eq!(
+            check(rig([0.0, 0.0], [0.0, 0.02])).unwrap_err(),
+            "e.toml: [rig] greatest of wheel_load_range_n 0 N must be finite and > 0 N"
+        );
+        assert_eq!(
+            check(rig([90.0, 90.0], [0.0, 0.0])).unwrap_err(),
+            "e.toml: [rig] greatest of sled_speed_range_m_s 0 m/s must be finite and > 0 m/s"
+        );
     }
 }

@@ -16,7 +16,7 @@ use crate::voting::Voting;
 /// The largest number of evaluations that wait for a second answer. Beyond it none is verified: with a single worker, they would accumulate
 /// without end.
 const MAX_WAITING: usize = 20_000;
-/// The largest number of answers to a disputed evaluation.
+/// The number of answers to a disputed evaluation beyond which no vote is awaited. Where these leave no majority, further answers count.
 const MAX_ANSWERS: usize = 15;
 
 /// A worker's answer.

@@ -7,7 +7,7 @@ import { probability } from "../words/quantity.js";
 /** @param {{ search: any }} properties search: of the progress of a search */
 export function Leaders({ search }) {
   return html`
-    <p>At present: ${translated(search.doing)}.</p>
+    <p>The search now ${translated(search.doing)}.</p>
     ${search.leaders.length > 0 && html`<h3>Leaders so far</h3>
       <ol class="leaders bars" aria-label="Leaders so far">${search.leaders.map((/** @type {any} */ leader) => html`<li key=${leader.effects.join(" ")}>
         <span class="bar"><i style=${{ width: `${(100 * leader.probability).toFixed(1)}%` }}></i></span>

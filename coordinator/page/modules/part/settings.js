@@ -1,7 +1,7 @@
 // Language and units of the page: kept in this browser.
 
 import { html } from "../html.js";
-import { choose, language, LANGUAGES } from "../language/language.js";
+import { choose, language, LANGUAGES, t } from "../language/language.js";
 import { chosenUnits, SLIPS, UNIT_SETS } from "../units.js";
 
 export function Settings() {
@@ -11,6 +11,6 @@ export function Settings() {
   return html`<div class="settings" role="group" aria-label="Language and units">
     <select aria-label="Language" onChange=${(/** @type {any} */ e) => choose(e.target.value)}>${options(Object.entries(LANGUAGES), language)}</select>
     <select aria-label="Units" onChange=${(/** @type {any} */ e) => chosenUnits.chooseSet(e.target.value)}>${options(same(UNIT_SETS), chosenUnits.set)}</select>
-    <select aria-label="Slip as" onChange=${(/** @type {any} */ e) => chosenUnits.chooseSlip(e.target.value)}>${options([[SLIPS[0], "slip 0.3"], [SLIPS[1], "slip 30 %"]].map(([v, n]) => /** @type {[string, string]} */ ([v, n.replace("slip", language === "de" ? "Schlupf" : "slip")])), chosenUnits.slip)}</select>
+    <select aria-label="Slip as" onChange=${(/** @type {any} */ e) => chosenUnits.chooseSlip(e.target.value)}>${options(SLIPS.map((slip) => /** @type {[string, string]} */ ([slip, t`slip ${slip}`])), chosenUnits.slip)}</select>
   </div>`;
 }

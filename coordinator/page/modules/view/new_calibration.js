@@ -29,6 +29,8 @@ export function NewCalibration({ query }) {
   const [tags, setTags] = useState("");
   const [failure, setFailure] = useState(/** @type {any} */ (null));
   const [isSent, setSent] = useState(false);
+  // A calibration that runs, although its author and tags were not kept.
+  const [begun, setBegun] = useState(/** @type {{ study: number, message: string } | null} */ (null));
   const examples = useAnswer(path.examples);
   const kinds = Object.fromEntries(Object.entries(files).map(([own, text]) => [own, kindOf(own, text)]));
   const of = (/** @type {string} */ kind) => Object.keys(files).filter((own) => kinds[own] === kind);
@@ -37,6 +39,7 @@ export function NewCalibration({ query }) {
   const change = (/** @type {Files} */ next) => {
     setFiles(next);
     setFailure(null);
+    setBegun(null);
   };
   const add = (/** @type {Files} */ more) => change({ ...files, ...more });
   const without = (/** @type {any} */ all, /** @type {string} */ own) => Object.fromEntries(Object.entries(all).filter(([key]) => key !== own));
@@ -73,11 +76,13 @@ export function NewCalibration({ query }) {
     }
   };
   useEffect(() => void (query.study && again(query.study)), [query.study]);
-  /** Keeps author and tags, and the author for the next study of this browser. */
+  /** Keeps author and tags, and the author for the next study of this browser. The service may have named an author already. */
   const said = async (/** @type {number} */ study) => {
     author.keep(person);
-    if (person.trim() === "" && tagsOf(tags).length === 0) return;
-    await describe(study, { name: null, author: person.trim() || null, tags: tagsOf(tags), note: null });
+    const [name, words] = [person.trim(), tagsOf(tags)];
+    if (name === "" && words.length === 0) return;
+    const { details } = await get(path.study(study));
+    await describe(study, { ...details, author: name || details.author, tags: words });
   };
   const start = async () => {
     setSent(true);
@@ -86,8 +91,12 @@ export function NewCalibration({ query }) {
       const { experiment: rig, job: calibration } = requests(files, /** @type {string} */ (job), /** @type {string} */ (experiment));
       const { id } = await addExperiment(rig);
       const created = await submit({ experiment: id, ...calibration, name: name.trim() || null });
-      await said(created.study);
-      location.hash = address(["studies", created.study, "live"]);
+      try {
+        await said(created.study);
+        location.hash = address(["studies", created.study, "live"]);
+      } catch (error) {
+        setBegun({ study: created.study, message: /** @type {Error} */ (error).message });
+      }
     } catch (error) {
       setFailure(error);
     }
@@ -118,10 +127,11 @@ export function NewCalibration({ query }) {
       ${of("job").map((own) => html`<option value=${own} selected=${own === job}>${own}</option>`)}</select></label></p>`}
     ${!isEmpty && !table && !isAsked && absent.length > 0 && html`<div class="missing" role="status"><p>Still needed:</p><ul>${absent.map((what) => html`<li>${what}</li>`)}</ul></div>`}
     ${failure && place === null && html`<${Failure} error=${failure} />`}
+    ${begun && html`<p class="note" role="status">The calibration runs, but its author and tags were not kept: ${begun.message}. <a href=${address(["studies", begun.study, "live"])}>See it run</a></p>`}
     ${!isEmpty && html`<div class="actions">
       <label>Name <input value=${name} placeholder="as the study is listed" onInput=${(/** @type {any} */ e) => setName(e.target.value)} /></label>
       <label>Author <input value=${person} onInput=${(/** @type {any} */ e) => setPerson(e.target.value)} /></label>
       <label>Tags <input value=${tags} placeholder="sand, wheel 3" onInput=${(/** @type {any} */ e) => setTags(e.target.value)} /></label>
-      <button class="main" type="button" disabled=${absent.length > 0 || Boolean(table) || isSent} onClick=${start}>${isSent ? t`It is being sent` : t`Start the calibration`}</button>
+      <button class="main" type="button" disabled=${absent.length > 0 || Boolean(table) || isSent || begun !== null} onClick=${start}>${isSent ? t`It is being sent` : t`Start the calibration`}</button>
     </div>`}`;
 }
