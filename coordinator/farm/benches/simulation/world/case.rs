@@ -39,7 +39,6 @@ pub(crate) enum Kind {
     /// A fit by steps, which uses predicted values.
     Fit,
     /// Two hundred particles, for tests with several workers that compute wrongly. It is part of no schedule.
-    #[allow(dead_code, reason = "the tests use it, and the bench includes this module")]
     Large,
 }
 
@@ -76,12 +75,13 @@ pub(crate) enum CaseResult {
 
 impl Kind {
     /// The kinds with their shares of the schedules `[%]`.
-    pub(crate) const SHARES: [(Kind, usize); 5] = [
+    pub(crate) const SHARES: [(Kind, usize); 6] = [
         (Kind::Sample, 46),
         (Kind::Refusing, 20),
         (Kind::Poisoned, 16),
         (Kind::Crowded, 2),
         (Kind::Fit, 16),
+        (Kind::Large, 0),
     ];
 
     fn job(self, seed: u64) -> String {
