@@ -24,6 +24,8 @@ pub enum FileKind {
     Job,
     /// Wheels, soils, rig and noise: `experiment.toml`.
     Experiment,
+    /// A decision alone, and wheels that the experiment does not have.
+    Decision,
     /// An effect.
     Effect,
     /// The map of an import.
@@ -32,6 +34,20 @@ pub enum FileKind {
     Model,
     /// The parameters of forward runs.
     Parameters,
+}
+
+/// Returns the schema of a decision: the table of a job, and wheels as in an experiment.
+fn decision() -> Value {
+    let (mut job, mut experiment) = (job(), from_type::<ExperimentKeys>());
+    json!({
+        "type": "object",
+        "required": ["decision"],
+        "additionalProperties": false,
+        "properties": {
+            "decision": job["properties"]["decision"].take(),
+            "wheel": experiment["properties"]["wheel"].take(),
+        },
+    })
 }
 
 impl FileKind {
@@ -55,6 +71,7 @@ impl FileKind {
         match self {
             FileKind::Job => &["**/job.toml", "**/*-job.toml"],
             FileKind::Experiment => &["**/experiment.toml"],
+            FileKind::Decision => &["**/decision.toml", "**/*-decision.toml"],
             FileKind::Effect => &["**/effects/*.toml"],
             FileKind::Map => &["**/map.toml", "**/*-map.toml"],
             FileKind::Model => &["**/model.toml"],
@@ -67,6 +84,7 @@ impl FileKind {
         let mut schema = match self {
             FileKind::Job => job(),
             FileKind::Experiment => from_type::<ExperimentKeys>(),
+            FileKind::Decision => decision(),
             FileKind::Effect => effect::effect(),
             FileKind::Map => map::map(),
             FileKind::Model => model(),

@@ -28,6 +28,9 @@ fn message(kind: FileKind, text: &str) -> String {
                 .map(|_| ())
                 .map_err(|e| e.to_string())
         }
+        FileKind::Decision => job::read_decision("decision.toml", text)
+            .map(|_| ())
+            .map_err(|e| e.to_string()),
         FileKind::Effect => formula::Effect::read(text).map(|_| ()).map_err(|e| e.to_string()),
         FileKind::Map => {
             let source = import::SourceFile {
