@@ -11,12 +11,13 @@ let service, tab, page, study;
 
 before(async () => {
   service = await Service.start();
+  // The browser is there first, so that the study is not over before the page shows it.
+  tab = await open({ url: service.url });
+  page = tab.page;
   const ask = (job) => job.replace('apply = "auto"', 'apply = "ask"');
   const texts = Object.fromEntries((await filesOf("examples/hidden-effect", ask)).map(({ name, text }) => [name, text]));
   const { id } = await service.post("/v1/experiments", { toml: texts["experiment.toml"], files: { "runs.csv": texts["runs.csv"] } });
   study = (await service.post("/v1/calibrations", { experiment: id, toml: texts["job.toml"], files: {}, name: "sand" })).study;
-  tab = await open({ url: service.url });
-  page = tab.page;
 });
 after(async () => {
   await tab?.close();
