@@ -11,13 +11,12 @@ let service, tab, page, study;
 
 before(async () => {
   service = await Service.start();
-  // The browser is there first, so that the study is not over before the page shows it.
-  tab = await open({ url: service.url });
-  page = tab.page;
   const ask = (job) => job.replace('apply = "auto"', 'apply = "ask"');
   const texts = Object.fromEntries((await filesOf("examples/hidden-effect", ask)).map(({ name, text }) => [name, text]));
   const { id } = await service.post("/v1/experiments", { toml: texts["experiment.toml"], files: { "runs.csv": texts["runs.csv"] } });
   study = (await service.post("/v1/calibrations", { experiment: id, toml: texts["job.toml"], files: {}, name: "sand" })).study;
+  tab = await open({ url: service.url });
+  page = tab.page;
 });
 after(async () => {
   await tab?.close();
@@ -25,12 +24,18 @@ after(async () => {
 });
 
 test("a search shows what it is doing, who leads, and who computes", async () => {
-  await page.goto(`${service.url}/#/studies/${study}/live`);
+  // Its search takes several seconds, so that it is not over before the page shows it.
+  const files = await filesOf("examples/cmu-sand", undefined, ["discover.toml", "discover-experiment.toml", "runs.csv"]);
+  const texts = Object.fromEntries(files.map(({ name, text }) => [name, text]));
+  const { id } = await service.post("/v1/experiments", { toml: texts["discover-experiment.toml"], files: { "runs.csv": texts["runs.csv"] } });
+  const watched = (await service.post("/v1/calibrations", { experiment: id, toml: texts["discover.toml"], files: {}, name: "watched" })).study;
+  await page.goto(`${service.url}/#/studies/${watched}/live`);
   await page.getByRole("list", { name: "Leaders so far" }).locator("li").first().waitFor({ timeout: STUDY_MS });
   assert.match(await page.getByText("The search now").textContent(), /^The search now [a-z].*\.$/);
   await page.getByRole("region", { name: "Workers" }).waitFor();
   await shot(page, "details-board");
   await page.getByRole("link", { name: "Read the story" }).waitFor({ timeout: STUDY_MS });
+  await fetch(`${service.url}/v1/studies/${watched}`, { method: "DELETE" });
 });
 
 test("a study is renamed, and found by its author and tags", async () => {
