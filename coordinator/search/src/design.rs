@@ -193,7 +193,7 @@ mod tests {
 
     #[test]
     fn what_is_proposed_stays_within_the_limits_that_the_rig_states() {
-        assert_eq!(reach(&[90.0; 6], Some([50.0, 120.0])), [50.0, 78.0, 120.0]);
+        assert_eq!(reach(&[90.0; 6], Some([50.0, 120.0])), [50.0, 77.0, 120.0]);
         assert_eq!(reach(&[90.0; 6], Some([90.0, 90.0])), [90.0]);
         assert_eq!(reach(&[90.0; 6], Some([90.0, 91.0])), [90.0, 91.0]);
         let (job, mut files, _) = crate::fixture::read("examples/hidden-effect");
