@@ -145,9 +145,9 @@ impl Farm {
                 of_version.insert(self.rule.voting.voter(name));
             }
         }
-        let own = voters.get(equations_of(version)).map_or(0, BTreeSet::len);
-        let others = voters.into_iter().filter(|(_, voters)| voters.len() > own);
-        others
+        let votes = voters.get(equations_of(version)).map_or(0, BTreeSet::len);
+        let stronger = voters.into_iter().filter(|(_, voters)| voters.len() > votes);
+        stronger
             .max_by_key(|(_, voters)| voters.len())
             .map(|(version, _)| version.to_owned())
     }
@@ -169,10 +169,11 @@ impl Farm {
         // The files of effects are sent with the variant, so a worker need not have them.
         let pinned = calibration.model_version.as_deref().map(equations_of);
         if pinned.is_none()
-            && let Some(most) = self.outvoting(version, calibration, now_ms.saturating_sub(self.lease_ms))
+            && let Some(outvoting) =
+                self.outvoting(version, calibration, now_ms.saturating_sub(self.lease_ms))
         {
             return Err(format!(
-                "most workers compute calibration {id} with model version {most}, worker {worker} with {version}"
+                "most workers compute calibration {id} with model version {outvoting}, worker {worker} with {version}"
             ));
         }
         match pinned.filter(|pinned| *pinned != equations_of(version)) {

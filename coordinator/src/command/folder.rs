@@ -164,7 +164,7 @@ impl Folder {
     /// Brings a study to its end, writes its results and prints them.
     pub(super) async fn finish(mut self, study: i64, details: Details) -> anyhow::Result<()> {
         self.bring_to_end(study).await?;
-        // What was taken back is cancelled where it was not over, which is no failure of the study.
+        // A calibration that was taken back before its end is cancelled, and this is no failure of the study.
         let (rows, _) = self.service.store().reader().members_and_withdrawn(study).await?;
         if let Some(row) = rows.iter().find(|row| row.state == CalibrationState::Finished) {
             let rounds = self.service.search_rounds(study).await?;

@@ -58,7 +58,7 @@ impl FinalDraws {
         width: usize,
     ) -> Vec<EvaluationRow> {
         let bits = |theta: &[f64]| -> Vec<u64> { theta.iter().map(|x| x.to_bits()).collect() };
-        // Of equal draws, the first row counts.
+        // Equal draws take the row that comes first.
         let rows: BTreeMap<Vec<u64>, &EvaluationRow> =
             drawn.values().rev().map(|row| (bits(&row.theta), row)).collect();
         let draws = self.thetas.iter().enumerate();

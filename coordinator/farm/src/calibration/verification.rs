@@ -32,7 +32,7 @@ impl VerificationRule {
 /// compared, and a restart chooses the same ones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verification {
-    /// What is verified, and by whom.
+    /// The rule that says which evaluations are verified, and who may confirm them.
     pub rule: VerificationRule,
     /// The key of the calibration.
     pub key: SealKey,

@@ -30,7 +30,7 @@ pub struct DecisionAnswer {
     pub best_at_mode: Option<String>,
     /// What the difference between the two best options comes from; null with less than two.
     pub decided_by: Option<DecidedBy>,
-    /// By how much the expected loss would fall if parameters and model were known: no run is worth more.
+    /// The fall of the expected loss if parameters and model were known. No run is worth more than this.
     pub perfect_information: Option<f64>,
     /// Cost of one more run.
     pub run_cost: Option<f64>,
@@ -113,7 +113,7 @@ pub struct RunValue {
     pub wheel_load_n: f64,
     /// Speed of travel `[m/s]`.
     pub sled_speed_m_s: f64,
-    /// By how much the run is expected to lower the least expected loss.
+    /// The fall of the least expected loss that the run is expected to bring.
     pub value: f64,
     /// Standard error of the value by the number of draws.
     pub value_se: f64,

@@ -75,7 +75,7 @@ struct Gain {
     effective_draws: f64,
 }
 
-/// What is left after an outcome of a run: the least expected loss and the effective number of draws.
+/// The state after an outcome of a run: the least expected loss and the effective number of draws.
 struct Posterior {
     least: f64,
     effective_draws: f64,
