@@ -19,6 +19,8 @@ const BATCH_STEP: u64 = (1 << 40) + 2;
 pub(super) struct BatchPoint {
     pub(super) theta: Vec<f64>,
     pub(super) log_likelihood: f64,
+    /// ln of the tempered likelihood by which the target holds it.
+    pub(super) value: f64,
     pub(super) outputs: Vec<f64>,
 }
 
@@ -70,10 +72,14 @@ impl Batch {
         };
         let explored = selected(&doubtful, (share * size as f64) as usize, &mut stream);
         let drawn = selected(&sample.thetas(), size - explored.len(), &mut stream);
-        let points = drawn.iter().chain(&explored).map(|theta| BatchPoint {
-            theta: theta.to_vec(),
-            log_likelihood: target.score(theta).log_likelihood,
-            outputs: target.emulator.predict(target.prior, theta).outputs,
+        let points = drawn.iter().chain(&explored).map(|theta| {
+            let score = target.score(theta);
+            BatchPoint {
+                theta: theta.to_vec(),
+                log_likelihood: score.log_likelihood,
+                value: score.value(exponent),
+                outputs: target.emulator.predict(target.prior, theta).outputs,
+            }
         });
         Self {
             points: points.collect(),

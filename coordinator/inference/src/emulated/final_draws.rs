@@ -14,7 +14,7 @@ use crate::tmcmc::{Particle, PosteriorSample};
 
 /// Numbers of the final draws: of the emulated posterior, of the mixture fitted to it, whose tails are heavier, and of the mixture
 /// fitted to the stage before, which reaches mass that the emulator may have missed.
-const DRAWS: [usize; 3] = [170, 15, 15];
+const DRAWS: [usize; 3] = [150, 20, 30];
 
 /// Share of effective draws with which the final draws are the result.
 const ENOUGH: f64 = 0.4;

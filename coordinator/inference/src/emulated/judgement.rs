@@ -17,7 +17,7 @@ const MAX_FINAL_SD: f64 = 0.1;
 
 /// Factor of the largest sds for each round of a stage that was repeated, down to the last: a rough model never agrees closely, and
 /// uneven weights of the final draws say so.
-const RELAXED: f64 = 1.3;
+const RELAXED: f64 = 1.5;
 const MAX_RELAXED: f64 = 8.0;
 
 /// Largest share of rejected evaluations with which the exponent grows, in the first round and in a stage that was repeated often.
@@ -34,6 +34,9 @@ const MAX_FINAL_DOUBT: f64 = 0.02;
 
 /// Nats below the median of a sample within which an explored vector would have belonged to it.
 const BELONGS: f64 = 3.0;
+
+/// Nats by which the target understates an explored vector that it missed.
+const UNDERSTATED: f64 = 1.0;
 
 /// The bounds of a batch with which the exponent grows.
 struct Limits {
@@ -91,8 +94,10 @@ impl EmulatedSampler {
             .map(|(point, outputs)| value(&point.theta, outputs) - exponent * point.log_likelihood)
             .collect();
         let explored = batch.points.iter().zip(outputs).skip(batch.drawn);
-        let missed =
-            explored.filter(|(point, outputs)| value(&point.theta, outputs) > batch.median - BELONGS);
+        let missed = explored.filter(|(point, outputs)| {
+            let value = value(&point.theta, outputs);
+            value > batch.median - BELONGS && value > point.value + UNDERSTATED
+        });
         let missed = missed.count();
         let rejected = (batch.drawn - errors.len()) as f64 / batch.drawn as f64;
         let moments = crate::diagnostics::mean_and_sd(&errors);

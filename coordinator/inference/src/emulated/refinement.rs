@@ -14,6 +14,9 @@ const SHARE: f64 = 0.2;
 /// Largest mean sd of the emulated tempered log-likelihood at the next exponent, in nats.
 const MAX_SD: f64 = 1.5;
 
+/// Factor by which the exponent grows in spite of this: the emulator agreed at the last exponent, and its sds are upper estimates.
+const MIN_GROWTH: f64 = 1.3;
+
 /// Number of rounds at one exponent after which the scatter of the model is measured.
 const ROUGH_ROUNDS: usize = 3;
 
@@ -173,7 +176,7 @@ fn next_exponent(scores: &[EmulatedScore], from: f64) -> (f64, f64) {
     };
     let is_reached = |exponent: f64| {
         let (share, sd) = forecast(exponent);
-        share >= SHARE && sd <= MAX_SD
+        share >= SHARE && (sd <= MAX_SD || exponent <= MIN_GROWTH * from)
     };
     if is_reached(1.0) {
         return (1.0, forecast(1.0).0);

@@ -7,8 +7,11 @@ use statistics::prior::Prior;
 use super::emulator::Emulator;
 use crate::tmcmc::Particle;
 
-/// Sd of the tempered log-likelihood, in nats, above which the emulator is not trusted.
+/// Sd of the tempered log-likelihood, in nats, above which distrust lowers it.
 const TRUSTED_SD: f64 = 3.0;
+
+/// Largest nats by which distrust lowers the tempered log-likelihood of parameters that the target holds nevertheless.
+const MAX_PENALTY: f64 = 1.0;
 
 /// Sds by which an optimistic log-likelihood exceeds the emulated one.
 const OPTIMISM: f64 = 2.0;
@@ -28,8 +31,7 @@ impl EmulatedScore {
     /// Returns ln of the tempered likelihood, lowered where the emulator is not trusted: far from the training points its
     /// predictions may be of any size.
     pub(crate) fn value(&self, exponent: f64) -> f64 {
-        let excess = self.excess(exponent);
-        exponent * self.log_likelihood + self.log_acceptance - 0.5 * excess * excess
+        exponent * self.log_likelihood + self.log_acceptance - self.penalty(exponent)
     }
 
     /// Returns the largest tempered log-likelihood that would be no surprise.
@@ -37,13 +39,14 @@ impl EmulatedScore {
         exponent * (self.log_likelihood + OPTIMISM * self.sd) + self.log_acceptance
     }
 
-    /// Returns whether the emulator is trusted at an exponent.
+    /// Returns whether the emulator is trusted at an exponent: distrust lowers the tempered likelihood little.
     pub(crate) fn is_trusted(&self, exponent: f64) -> bool {
-        self.excess(exponent) <= 0.0
+        self.penalty(exponent) <= MAX_PENALTY
     }
 
-    fn excess(&self, exponent: f64) -> f64 {
-        (exponent * self.sd - TRUSTED_SD).max(0.0)
+    fn penalty(&self, exponent: f64) -> f64 {
+        let excess = (exponent * self.sd - TRUSTED_SD).max(0.0);
+        0.5 * excess * excess
     }
 }
 

@@ -15,6 +15,18 @@ pub struct KrigingSettings {
     pub nugget: f64,
 }
 
+/// Weight of the mean variance of the remainder beside the points about the place of a prediction.
+const TYPICAL_WEIGHT: f64 = 1.0;
+
+/// A prediction of the components at a point.
+pub(crate) struct Interpolated {
+    pub(crate) components: Vec<f64>,
+    /// Variance of their smooth part, in variances of the remainder.
+    pub(crate) smooth_variance: f64,
+    /// Variance of the remainder, summed over components.
+    pub(crate) remainder_variance: f64,
+}
+
 /// A fit of components by kriging.
 ///
 /// A component at u is `sum_t b_t f_t(u) + sum_i a_i exp(-|u - u_i|^2 / (2 length^2))`.
@@ -29,10 +41,12 @@ pub(crate) struct Kriging {
     trend: Vec<f64>,
     /// a, by points, then components.
     weights: Vec<f64>,
-    /// Errors of the prediction of each point from all other points, by points, then components.
+    /// Square error of the prediction of each point from all other points, summed over components.
     left_out: Vec<f64>,
-    /// Variance of the remainder of each component.
-    pub(crate) variances: Vec<f64>,
+    /// The variance of the remainder that each of these errors suggests, summed over components.
+    suggested: Vec<f64>,
+    /// Its mean over the mass of the target.
+    typical: f64,
     /// L of `K = L L'` by rows, the lower triangle alone.
     factor: Vec<f64>,
     /// `L^-1 F`, by points, then terms.
@@ -47,9 +61,17 @@ impl Kriging {
     /// With K the correlations, F the terms and `B = K^-1 - K^-1 F (F' K^-1 F)^-1 F' K^-1`, the weights are `a = B y` and the error
     /// of the prediction of a point from all other points is `a_i / B_ii`.
     ///
+    /// # Arguments
+    /// - `mass`: weights of the points, by the mass of the target about them.
+    ///
     /// # Source
     /// Dubrule 1983, Math. Geol. 15:687, doi:10.1007/BF01033232. Checked by `tests::left_out_errors_are_those_of_separate_fits`.
-    pub(crate) fn new(points: &[Vec<f64>], values: &[Vec<f64>], settings: KrigingSettings) -> Option<Self> {
+    pub(crate) fn new(
+        points: &[Vec<f64>],
+        values: &[Vec<f64>],
+        mass: &[f64],
+        settings: KrigingSettings,
+    ) -> Option<Self> {
         let (count, components) = (points.len(), values.first()?.len());
         let dimension = points.first()?.len();
         let terms = settings.degree.terms(dimension);
@@ -72,16 +94,14 @@ impl Kriging {
         let weights = factor.tr_solve_lower_triangular(&remainder)?;
         let projected = normal.l().solve_lower_triangular(&half_terms.transpose())? * &inverse;
         let diagonal = |i: usize| column_square(&inverse, i) - column_square(&projected, i);
-        let degrees = (count - terms) as f64;
-        let variances = (0..components).map(|k| remainder.column(k).norm_squared() / degrees);
-        let left_out = (0..count).flat_map(|i| {
-            let precision = diagonal(i).max(f64::MIN_POSITIVE);
-            weights
-                .row(i)
-                .iter()
-                .map(move |a| a / precision)
-                .collect::<Vec<_>>()
-        });
+        let squares = |i: usize| weights.row(i).norm_squared();
+        let precisions: Vec<f64> = (0..count).map(|i| diagonal(i).max(f64::MIN_POSITIVE)).collect();
+        let left_out = precisions.iter().enumerate().map(|(i, p)| squares(i) / (p * p));
+        let suggested: Vec<f64> = precisions
+            .iter()
+            .enumerate()
+            .map(|(i, p)| squares(i) / p)
+            .collect();
         Some(Self {
             factor: lower_rows(&factor),
             half_terms: half_terms.transpose().as_slice().to_vec(),
@@ -91,15 +111,19 @@ impl Kriging {
             dimension,
             components,
             left_out: left_out.collect(),
-            variances: variances.collect(),
+            typical: weighted_mean(&suggested, mass),
+            suggested,
             trend: trend.transpose().as_slice().to_vec(),
             weights: weights.transpose().as_slice().to_vec(),
         })
     }
 
-    /// Returns the components at a whitened point, and the variance of their smooth part in variances of the remainder,
-    /// `1 - k' K^-1 k + t' (F' K^-1 F)^-1 t` with `t = f - F' K^-1 k`.
-    pub(crate) fn predict(&self, u: &[f64]) -> (Vec<f64>, f64) {
+    /// Predicts the components at a whitened point.
+    ///
+    /// The variance of the smooth part is `1 - k' K^-1 k + t' (F' K^-1 F)^-1 t` with `t = f - F' K^-1 k`, in variances of the remainder.
+    /// The latter is that of the left-out errors of the points about u, weighted by `exp(-|u - u_i|^2 / d)` in d dimensions: a model
+    /// is often harder to predict in the tails of a target than where its mass is.
+    pub(crate) fn predict(&self, u: &[f64]) -> Interpolated {
         let mut terms = Vec::with_capacity(self.trend.len() / self.components.max(1));
         self.settings.degree.extend_terms(u, &mut terms);
         let mut correlations = Vec::with_capacity(self.points.len() / self.dimension);
@@ -108,11 +132,16 @@ impl Kriging {
             add(&mut sums, *term, row);
         }
         let scale = -0.5 / (self.settings.length * self.settings.length);
-        let points = self.points.chunks_exact(self.dimension);
-        for (point, row) in points.zip(self.weights.chunks_exact(self.components.max(1))) {
-            let correlation = libm::exp(scale * square_distance(point, u));
+        let (mut remainder, mut weight) = (TYPICAL_WEIGHT * self.typical, TYPICAL_WEIGHT);
+        let points = self.points.chunks_exact(self.dimension).zip(&self.suggested);
+        for ((point, suggested), row) in points.zip(self.weights.chunks_exact(self.components.max(1))) {
+            let square = square_distance(point, u);
+            let correlation = libm::exp(scale * square);
             add(&mut sums, correlation, row);
             correlations.push(correlation);
+            let nearness = libm::exp(-square / self.dimension as f64);
+            remainder += nearness * suggested;
+            weight += nearness;
         }
         let solved = solve_lower(&self.factor, correlations);
         for (half, row) in solved.iter().zip(self.half_terms.chunks_exact(terms.len())) {
@@ -123,17 +152,22 @@ impl Kriging {
             .iter()
             .map(|x| x * x)
             .sum();
-        (sums, (1.0 - explained).max(0.0) + unknown)
+        Interpolated {
+            components: sums,
+            smooth_variance: (1.0 - explained).max(0.0) + unknown,
+            remainder_variance: remainder / weight,
+        }
     }
 
     /// Returns the mean square error of predictions of a point from all other points, summed over components, with a weight
     /// for each point.
     pub(crate) fn left_out_error(&self, weights: &[f64]) -> f64 {
-        let rows = self.left_out.chunks_exact(self.components.max(1));
-        let squares = rows.map(|row| row.iter().map(|e| e * e).sum::<f64>());
-        let total: f64 = weights.iter().sum();
-        squares.zip(weights).map(|(e, w)| e * w).sum::<f64>() / total
+        weighted_mean(&self.left_out, weights)
     }
+}
+
+fn weighted_mean(values: &[f64], weights: &[f64]) -> f64 {
+    dot(values, weights) / weights.iter().sum::<f64>()
 }
 
 fn correlations(points: &[Vec<f64>], settings: KrigingSettings) -> DMatrix<f64> {
@@ -189,5 +223,65 @@ pub(super) fn square_distance(a: &[f64], b: &[f64]) -> f64 {
 fn add(sums: &mut [f64], factor: f64, row: &[f64]) {
     for (sum, value) in sums.iter_mut().zip(row) {
         *sum += factor * value;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SETTINGS: KrigingSettings = KrigingSettings {
+        degree: TrendDegree::Linear,
+        length: 1.5,
+        nugget: 1e-3,
+    };
+
+    /// Points on a spiral, and two components that are no polynomials.
+    fn data(count: usize) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+        let points: Vec<Vec<f64>> = (0..count)
+            .map(|i| {
+                let angle = i as f64;
+                vec![0.2 * angle * libm::cos(angle), 0.2 * angle * libm::sin(angle)]
+            })
+            .collect();
+        let values = points
+            .iter()
+            .map(|u| vec![libm::sin(2.0 * u[0]) + u[1], libm::exp(0.5 * u[1])]);
+        let values = values.collect();
+        (points, values)
+    }
+
+    #[test]
+    fn left_out_errors_are_those_of_separate_fits() {
+        let (points, values) = data(14);
+        let all = Kriging::new(&points, &values, &[1.0; 14], SETTINGS).unwrap();
+        for i in 0..points.len() {
+            let rest = |rows: &[Vec<f64>]| [&rows[..i], &rows[i + 1..]].concat();
+            let fit = Kriging::new(&rest(&points), &rest(&values), &[1.0; 13], SETTINGS).unwrap();
+            let predicted = fit.predict(&points[i]);
+            let square = square_distance(&predicted.components, &values[i]);
+            assert!((all.left_out[i] - square).abs() < 1e-9 * square, "point {i}");
+            let suggested = square / (predicted.smooth_variance + SETTINGS.nugget);
+            assert!(
+                (all.suggested[i] - suggested).abs() < 1e-9 * suggested,
+                "point {i}"
+            );
+        }
+    }
+
+    #[test]
+    fn predictions_are_surer_where_the_left_out_errors_are_small() {
+        // A straight line on one side, a fast oscillation on the other.
+        let points: Vec<Vec<f64>> = (-30..=30).map(|i| vec![0.2 * f64::from(i)]).collect();
+        let value = |u: f64| if u > 0.0 { libm::sin(9.0 * u) } else { 0.0 };
+        let values: Vec<Vec<f64>> = points.iter().map(|u| vec![value(u[0])]).collect();
+        let fit = Kriging::new(&points, &values, &[1.0; 61], SETTINGS).unwrap();
+        let variance = |u: f64| fit.predict(&[u]).remainder_variance;
+        assert!(
+            variance(-4.0) < 0.05 * variance(4.0),
+            "{} {}",
+            variance(-4.0),
+            variance(4.0)
+        );
     }
 }

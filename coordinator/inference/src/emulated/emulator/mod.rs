@@ -57,8 +57,8 @@ pub(crate) struct Emulator {
     basis: OutputBasis,
     kriging: Kriging,
     acceptance: Option<Acceptance>,
-    /// Sd of the remainder of an output, in error sds.
-    remainder_sd: f64,
+    /// Number of outputs.
+    output_count: f64,
     /// Root mean square error of the predictions of a point from all other points, in error sds of one output.
     pub(crate) left_out_error: f64,
     dimension: usize,
@@ -98,9 +98,9 @@ impl Emulator {
             .map(|point| (point.u.clone(), point.outputs.is_some()));
         Some(Self {
             acceptance: Acceptance::new(judged.collect()),
-            remainder_sd: (kriging.variances.iter().sum::<f64>() / count).sqrt(),
             left_out_error: (error / count).sqrt(),
             points: points.len(),
+            output_count: count,
             is_rough: false,
             kind,
             dimension,
@@ -115,7 +115,7 @@ impl Emulator {
         let u = self
             .frame
             .whiten(&self.kind.coordinates(prior, theta, self.dimension));
-        let (components, variance) = self.kriging.predict(&u);
+        let predicted = self.kriging.predict(&u);
         // The scatter of a rough model was measured; that of a smooth one is an error of the emulator.
         let unknown_scatter = if self.is_rough {
             0.0
@@ -123,8 +123,10 @@ impl Emulator {
             self.settings().nugget
         };
         Prediction {
-            outputs: self.basis.outputs(&components),
-            sd: self.remainder_sd * (variance + unknown_scatter).sqrt(),
+            sd: (predicted.remainder_variance / self.output_count
+                * (predicted.smooth_variance + unknown_scatter))
+                .sqrt(),
+            outputs: self.basis.outputs(&predicted.components),
             acceptance: self.acceptance.as_ref().map_or(1.0, |a| a.probability(&u)),
         }
     }
@@ -144,7 +146,7 @@ fn best_fit(
 ) -> Option<(f64, Kriging)> {
     let mut best: Option<(f64, Kriging)> = None;
     for settings in compared(before) {
-        if let Some(fit) = Kriging::new(points, values, settings) {
+        if let Some(fit) = Kriging::new(points, values, weights, settings) {
             let error = fit.left_out_error(weights);
             if error.is_finite() && best.as_ref().is_none_or(|(smallest, _)| error < *smallest) {
                 best = Some((error, fit));
