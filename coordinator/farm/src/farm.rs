@@ -35,6 +35,8 @@ pub struct Farm {
     pub(super) facts: Vec<Fact>,
     pub(super) lease_numbers: LeaseNumbers,
     pub(super) lease_ms: u64,
+    /// The number of the last step of an engine.
+    pub(super) last_step: u64,
     pub(super) rule: VerificationRule,
 }
 
@@ -80,6 +82,7 @@ impl Farm {
             lease_numbers: LeaseNumbers::new(epoch),
             lease_ms,
             rule: VerificationRule::default(),
+            last_step: 0,
         }
     }
 
@@ -144,6 +147,11 @@ impl Farm {
             quarantined: self.quarantine.len(),
         }
     }
+            stepping: self
+                .calibrations
+                .values()
+                .filter(|e| e.calibration.is_stepping())
+                .count(),
 
     /// Returns whether an exchange would give some worker a lease.
     pub fn has_work(&self) -> bool {
@@ -282,7 +290,7 @@ impl Farm {
     }
 
     /// Adds up busy time and removes finished calibrations.
-    fn account(&mut self, now_ms: u64) {
+    pub(super) fn account(&mut self, now_ms: u64) {
         for entry in self.calibrations.values_mut() {
             // A calibration without leases has no cost.
             let calibration = &entry.calibration;

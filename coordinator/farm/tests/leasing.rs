@@ -177,6 +177,7 @@ fn late_results_of_a_calibration_that_ends_in_its_replay_are_compared() {
             let outcome = case.answers[&evaluation].outcome.clone();
             let computed = SimulationResult::new(outcome).expect("no faults");
             calibration.complete(evaluation, computed, "a").expect("it fits");
+            calibration.step();
         }
     }
     let mut after = Farm::new(2, LEASE_MS);
