@@ -1,6 +1,6 @@
 //! The farm: all calibrations in progress and all connected workers, and the assignment of evaluations to workers.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use shared::api::{CalibrationState, CalibrationStatus};
 use shared::exchange::{ExchangeRequest, ExchangeResponse};
@@ -10,7 +10,6 @@ use super::control::{Control, ControlError};
 use super::lease_numbers::LeaseNumbers;
 use super::metrics::{FarmCounters, FarmMetrics};
 use super::progress::{self, Pace};
-use super::voting::includes;
 use super::worker_record::WorkerRecord;
 use crate::calibration::{Calibration, VerificationRule};
 use crate::lease::LeaseQueue;
@@ -29,6 +28,8 @@ pub struct Farm {
     pub(super) workers: BTreeMap<String, WorkerRecord>,
     /// Workers that compute wrongly, with the reason.
     pub(super) quarantine: BTreeMap<String, String>,
+    /// The connected workers that are quarantined.
+    pub(super) shut_out: BTreeSet<String>,
     /// Calibrations to replay without the results of quarantined workers, since the last call of [`Farm::take_rewinds`].
     pub(super) rewinds: Vec<i64>,
     pub(super) counters: FarmCounters,
@@ -76,6 +77,7 @@ impl Farm {
             ended: BTreeMap::new(),
             workers: BTreeMap::new(),
             quarantine: BTreeMap::new(),
+            shut_out: BTreeSet::new(),
             rewinds: Vec::new(),
             counters: FarmCounters::default(),
             facts: Vec::new(),
@@ -159,15 +161,9 @@ impl Farm {
         self.remaining() > 0 || self.calibrations.values().any(second)
     }
 
-    /// Returns the number of workers that are not quarantined. Every exchange calls this function, so it loops over the few quarantined
-    /// workers and not over all.
+    /// Returns the number of workers that are not quarantined. Every exchange calls this function, so it loops over no workers.
     pub(super) fn able_workers(&self) -> usize {
-        let known = |name: &String| {
-            let from = self.workers.range(name.clone()..);
-            from.take_while(|(worker, _)| includes(name, worker)).count()
-        };
-        let quarantined: usize = self.quarantine.keys().map(known).sum();
-        self.workers.len().saturating_sub(quarantined)
+        self.workers.len() - self.shut_out.len()
     }
 
     fn remaining(&self) -> u64 {
@@ -218,6 +214,9 @@ impl Farm {
 
     /// Records a worker. Returns whether leases were lost: the worker sends a message without having received them.
     fn note_worker(&mut self, request: &ExchangeRequest, now_ms: u64) -> bool {
+        if !self.workers.contains_key(&request.worker) && self.quarantined(&request.worker).is_some() {
+            self.shut_out.insert(request.worker.clone());
+        }
         let record = self.workers.entry(request.worker.clone());
         let record = record.or_insert_with(|| WorkerRecord {
             model_version: request.model_version.clone(),
@@ -281,6 +280,7 @@ impl Farm {
         }
         self.workers
             .retain(|_, w| now_ms.saturating_sub(w.last_seen_ms) < WORKER_SILENCE_MS);
+        self.shut_out.retain(|name| self.workers.contains_key(name));
         self.ask_beside_slow_workers(now_ms);
         for id in self.ids() {
             self.settle(id, now_ms);

@@ -66,6 +66,8 @@ impl Farm {
         self.quarantine
             .insert(convicted.clone(), reason(&convicted, calibration, evaluation));
         let is_convicted = |worker: &str| includes(&convicted, worker);
+        let workers = self.workers.keys().filter(|worker| is_convicted(worker));
+        self.shut_out.extend(workers.cloned());
         let in_progress = self
             .calibrations
             .iter_mut()

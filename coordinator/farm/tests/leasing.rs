@@ -2,7 +2,7 @@
 
 use farm::calibration::{SimulationResult, VerificationRule};
 use farm::{Control, Farm};
-use record::{Fact, SealKey};
+use record::{Fact, Quarantine, SealKey, Stored};
 use shared::api::CalibrationState;
 use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
 use shared::outcome::{Fault, Observables, Outcome};
