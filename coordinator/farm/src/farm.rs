@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use shared::api::{CalibrationState, CalibrationStatus};
 use shared::exchange::{ExchangeRequest, ExchangeResponse};
-use shared::model::ModelVariant;
+use shared::model::{ModelVariant, equations_of};
 
 use super::control::{Control, ControlError};
 use super::lease_numbers::LeaseNumbers;
@@ -349,6 +349,20 @@ impl Farm {
             (Control::Resume { skip_faults }, CalibrationState::Paused) => {
                 calibration.resume(skip_faults, &mut self.facts);
             }
+            (
+                Control::ComputeWith(version),
+                CalibrationState::Queued | CalibrationState::Running | CalibrationState::Paused,
+            ) => {
+                let version = calibration.spec.fit_variant.model_version(equations_of(&version));
+                let is_pinned = calibration.model_version.as_ref() == Some(&version);
+                match state {
+                    _ if !is_pinned => self.repin(id, version),
+                    CalibrationState::Paused => {
+                        return self.control(id, Control::Resume { skip_faults: false }, now_ms);
+                    }
+                    _ => {}
+                }
+            }
             (Control::Pause, _) => {
                 return Err(ControlError::WrongState {
                     id,
@@ -356,7 +370,7 @@ impl Farm {
                     verb: "paused",
                 });
             }
-            (Control::Resume { .. }, _) => {
+            (Control::Resume { .. } | Control::ComputeWith(_), _) => {
                 return Err(ControlError::WrongState {
                     id,
                     state,
@@ -364,7 +378,10 @@ impl Farm {
                 });
             }
         }
-        let state = calibration.state;
+        let state = self
+            .calibrations
+            .get(&id)
+            .map_or(state, |entry| entry.calibration.state);
         self.account(now_ms);
         Ok(state)
     }

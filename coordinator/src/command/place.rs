@@ -164,5 +164,12 @@ impl ServiceClient {
             Ok(body) => bail!("{}", body.error.message),
             Err(_) => bail!("{} answered {status}", self.url),
         }
+/// Returns the query of a path with one key.
+pub(super) fn query(key: &str, value: &str) -> anyhow::Result<String> {
+    // Only the query of this address is used.
+    let url = reqwest::Url::parse_with_params("http://localhost", [(key, value)])?;
+    Ok(format!("?{}", url.query().unwrap_or_default()))
+}
+
     }
 }

@@ -88,7 +88,8 @@ pub(super) async fn status(target: &TargetArguments) -> anyhow::Result<()> {
     Ok(say(&terminal::status_table(&[status]))?)
 }
 
-pub(super) async fn control(target: &TargetArguments, verb: &str) -> anyhow::Result<()> {
+/// Sends a command on a calibration, with the query of its path.
+pub(super) async fn control(target: &TargetArguments, verb: &str, query: &str) -> anyhow::Result<()> {
     let place = Place::open(&target.source).await?;
     if let Place::Folder { .. } = place {
         bail!(
@@ -97,19 +98,19 @@ pub(super) async fn control(target: &TargetArguments, verb: &str) -> anyhow::Res
     }
     let id = place.id(target).await?;
     let answer: serde_json::Value = place
-        .post(&format!("/v1/calibrations/{id}/{verb}"), &json!({}))
+        .post(&format!("/v1/calibrations/{id}/{verb}{query}"), &json!({}))
         .await?;
     let state = answer["state"].as_str().unwrap_or("in an unknown state");
     Ok(say(&format!("calibration {id} is {state}\n"))?)
 }
 
 pub(super) async fn resume(config: &ResumeArguments) -> anyhow::Result<()> {
-    let verb = if config.skip_faults {
-        "resume?skip_faults=true"
-    } else {
-        "resume"
+    let query = match &config.version {
+        Some(version) => place::query("version", version)?,
+        None if config.skip_faults => "?skip_faults=true".to_owned(),
+        None => String::new(),
     };
-    control(&config.target, verb).await
+    control(&config.target, "resume", &query).await
 }
 
 /// Archives or restores a study.

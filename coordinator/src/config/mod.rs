@@ -372,9 +372,12 @@ pub struct ResumeArguments {
 #[derive(Debug, Args)]
 pub struct ReportArguments {
     #[command(flatten)]
+    /// Go on with workers of this version of the equations alone; results of another version are dropped.
+    #[arg(long, value_name = "VERSION")]
+    pub version: Option<String>,
     pub target: TargetArguments,
     /// Output file; by default, standard output.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "version")]
     pub output: Option<PathBuf>,
 }
 

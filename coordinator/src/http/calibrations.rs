@@ -7,13 +7,16 @@ use axum::extract::State;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{Html, IntoResponse};
 use serde::Deserialize;
-use shared::api::{CalibrationCreated, CalibrationState, CalibrationStatus, ErrorBody, NewCalibration};
+use shared::api::{
+    CalibrationCreated, CalibrationState, CalibrationStatus, ErrorBody, ErrorKind, NewCalibration,
+};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::access::Caller;
 use super::error::{Body, HttpError, Id, Query};
-use super::studies::WithArchived;
+use super::list_page::StudiesPage;
+use super::work::LONGEST_NAME;
 use crate::service::Service;
 use export::InferenceData;
 use farm::Control;
@@ -120,7 +123,7 @@ async fn control(
     control: Control,
     by: &Caller,
 ) -> Result<Json<NewState>, HttpError> {
-    let state = service.control(id, control).await?;
+    let state = service.control(id, control.clone()).await?;
     let name = service.calibration_row(id).await?.name;
     tracing::info!(calibration = id, name, %by, state = state.name(), ?control, "told");
     Ok(Json(NewState { state }))
@@ -158,11 +161,13 @@ struct Resume {
     skip_faults: bool,
 }
 
+    version: Option<String>,
 /// Resumes a paused calibration.
 ///
 /// Evaluations that had used up their attempts are tried again; with `skip_faults=true` they count as rejected.
 #[utoipa::path(post, path = "/calibrations/{id}/resume", operation_id = "resume_calibration", tag = "calibrations",
-    params(("id" = i64, Path), ("skip_faults" = Option<bool>, Query, description = "whether evaluations that used up their attempts count as rejected")), responses(
+    params(("id" = i64, Path), ("skip_faults" = Option<bool>, Query, description = "whether evaluations that used up their attempts count as rejected"),
+        ("version" = Option<String>, Query, description = "the version of the equations that computes on, as `/v1/workers` states it")), responses(
     (status = 200, description = "its new state", body = NewState),
     (status = 404, body = ErrorBody),
     (status = 409, body = ErrorBody)))]
@@ -173,7 +178,23 @@ async fn resume(
     Query(resume): Query<Resume>,
 ) -> Result<Json<NewState>, HttpError> {
     let skip_faults = resume.skip_faults;
-    control(&service, id, Control::Resume { skip_faults }, &by).await
+    let command = match resume.version {
+        None => Control::Resume { skip_faults },
+        Some(_) if skip_faults => {
+            let message =
+                "version and skip_faults exclude each other: another version tries every evaluation again";
+            return Err(HttpError::new(ErrorKind::InvalidBody, message));
+        }
+        Some(version) if version.is_empty() || version.len() > LONGEST_NAME => {
+            let message = format!(
+                "version of {} bytes must have 1 to {LONGEST_NAME} bytes",
+                version.len()
+            );
+            return Err(HttpError::new(ErrorKind::InvalidBody, message));
+        }
+        Some(version) => Control::ComputeWith(version),
+    };
+    control(&service, id, command, &by).await
 }
 
 /// Stages of the sampler so far.

@@ -25,7 +25,7 @@ const LONGEST_WAIT_MS: u64 = 30_000;
 /// The largest number of leases in one answer.
 const MAX_WANTED: u32 = 10_000;
 /// The longest name of a worker, or of the version of its equations `[bytes]`.
-const LONGEST_NAME: usize = 200;
+pub(super) const LONGEST_NAME: usize = 200;
 /// The longest name of an external model, which may contain a URL `[bytes]`.
 const LONGEST_MODEL: usize = 400;
 /// The largest number of external models of a worker.

@@ -165,7 +165,7 @@ impl Service {
 
     /// Executes a user's command, and answers when its effect is stored.
     pub async fn control(&self, id: i64, control: Control) -> Result<CalibrationState, ServiceError> {
-        match self.dispatcher.control(id, control).await? {
+        match self.dispatcher.control(id, control.clone()).await? {
             Ok((state, fact)) => {
                 self.store.writer().durable(fact).await?;
                 Ok(state)
@@ -179,7 +179,7 @@ impl Service {
                 let verb = match control {
                     Control::Cancel => "cancelled",
                     Control::Pause => "paused",
-                    Control::Resume { .. } => "resumed",
+                    Control::Resume { .. } | Control::ComputeWith(_) => "resumed",
                 };
                 Err(ControlError::WrongState { id, state, verb }.into())
             }

@@ -286,7 +286,7 @@ impl<'a> Coordinator<'a> {
         let done = if is_lost {
             Ok(CalibrationState::Paused)
         } else {
-            farm.control(id, control, now_ms)
+            farm.control(id, control.clone(), now_ms)
         };
         self.take_facts(Source::Command)?;
         let Ok(state) = done else { return Ok(()) };

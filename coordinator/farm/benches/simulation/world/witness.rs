@@ -154,7 +154,7 @@ impl<'a> Witness<'a> {
                     format!("{worker}, which is honest, is quarantined")
                 })
             }
-            Fact::Rewound { .. } => {
+            Fact::Rewound { .. } | Fact::Repinned { .. } => {
                 self.live.retain(|(calibration, ..), _| *calibration != id);
                 self.unstarted.retain(|(calibration, _), _| *calibration != id);
                 Ok(())
