@@ -35,9 +35,9 @@ pub struct Farm {
     pub(super) counters: FarmCounters,
     pub(super) facts: Vec<Fact>,
     pub(super) lease_numbers: LeaseNumbers,
-    pub(super) lease_ms: u64,
     /// The number of the last step of an engine.
     pub(super) last_step: u64,
+    pub(super) lease_ms: u64,
     pub(super) rule: VerificationRule,
 }
 
@@ -82,9 +82,9 @@ impl Farm {
             counters: FarmCounters::default(),
             facts: Vec::new(),
             lease_numbers: LeaseNumbers::new(epoch),
+            last_step: 0,
             lease_ms,
             rule: VerificationRule::default(),
-            last_step: 0,
         }
     }
 
@@ -147,13 +147,13 @@ impl Farm {
             workers: self.workers.len(),
             unconfirmed: self.calibrations.values().map(waiting).sum(),
             quarantined: self.quarantine.len(),
-        }
-    }
             stepping: self
                 .calibrations
                 .values()
                 .filter(|e| e.calibration.is_stepping())
                 .count(),
+        }
+    }
 
     /// Returns whether an exchange would give some worker a lease.
     pub fn has_work(&self) -> bool {

@@ -14,7 +14,7 @@ use shared::text_file::read_text;
 
 use super::job_on_disk;
 use super::output::say;
-use super::place::Place;
+use super::place::{self, ListPart, Place};
 use crate::config::{
     ListArguments, ReportArguments, ResumeArguments, StudyArguments, SubmitArguments, TargetArguments,
 };
@@ -76,8 +76,31 @@ async fn added_effects(config: &SubmitArguments, service: &Place) -> anyhow::Res
 pub(super) async fn list(config: &ListArguments) -> anyhow::Result<()> {
     let place = Place::open(&config.source).await?;
     let which = if config.archived { "?archived=true" } else { "" };
-    let statuses: Vec<CalibrationStatus> = place.get(&format!("/v1/calibrations{which}")).await?;
-    let studies: Vec<StudyListItem> = place.get(&format!("/v1/studies{which}")).await?;
+    let part = ListPart {
+        limit: config.limit.unwrap_or(usize::MAX),
+        after: config.after,
+    };
+    let path = format!("/v1/calibrations{which}");
+    let statuses: Vec<CalibrationStatus> = place
+        .list(&path, part, |status: &CalibrationStatus| status.id)
+        .await?;
+    // Studies have the order of their first calibrations.
+    let shown = statuses
+        .iter()
+        .map(|status| status.study)
+        .filter(|&study| study > 0);
+    let part = match (shown.clone().min(), shown.max()) {
+        (Some(first), Some(last)) => ListPart {
+            limit: usize::try_from(last - first + 1)?,
+            after: Some(first - 1),
+        },
+        _ => ListPart {
+            limit: 0,
+            after: None,
+        },
+    };
+    let path = format!("/v1/studies{which}");
+    let studies: Vec<StudyListItem> = place.list(&path, part, |study: &StudyListItem| study.id).await?;
     Ok(say(&terminal::list(&statuses, &studies))?)
 }
 

@@ -88,15 +88,17 @@ async fn create(
 
 /// Lists the calibrations.
 ///
-/// Every calibration, oldest first; those of archived studies with `archived=true` alone.
+/// Every calibration, or a page of them, oldest first; those of archived studies with `archived=true` alone.
 #[utoipa::path(get, path = "/calibrations", operation_id = "list_calibrations", tag = "calibrations",
-    params(("archived" = Option<bool>, Query, description = "whether those of archived studies are listed too")), responses(
+    params(("archived" = Option<bool>, Query, description = "whether those of archived studies are listed too"),
+        ("limit" = Option<u32>, Query, minimum = 1, maximum = 10000, description = "the largest number of entries; without it, all"),
+        ("after" = Option<i64>, Query, description = "the number of the last entry of the page before")), responses(
     (status = 200, description = "calibrations with state and progress", body = Vec<CalibrationStatus>)))]
 async fn list(
     State(service): State<Service>,
-    Query(which): Query<WithArchived>,
+    Query(which): Query<StudiesPage>,
 ) -> Result<Json<Vec<CalibrationStatus>>, HttpError> {
-    Ok(Json(service.list(which.archived).await?))
+    Ok(Json(service.list(which.archived, which.page()?).await?))
 }
 
 /// State and progress of a calibration.
@@ -159,12 +161,14 @@ async fn pause(State(service): State<Service>, by: Caller, Id(id): Id) -> Result
 struct Resume {
     #[serde(default)]
     skip_faults: bool,
+    version: Option<String>,
 }
 
-    version: Option<String>,
 /// Resumes a paused calibration.
 ///
-/// Evaluations that had used up their attempts are tried again; with `skip_faults=true` they count as rejected.
+/// Evaluations that had used up their attempts are tried again; with `skip_faults=true` they count as rejected. With
+/// `version`, workers that compute this version of the equations go on, whatever version a first result has pinned:
+/// results of another version are dropped. The calibration need not be paused for that.
 #[utoipa::path(post, path = "/calibrations/{id}/resume", operation_id = "resume_calibration", tag = "calibrations",
     params(("id" = i64, Path), ("skip_faults" = Option<bool>, Query, description = "whether evaluations that used up their attempts count as rejected"),
         ("version" = Option<String>, Query, description = "the version of the equations that computes on, as `/v1/workers` states it")), responses(

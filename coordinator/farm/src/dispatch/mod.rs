@@ -5,6 +5,7 @@
 //! arrival.
 
 use std::collections::{BTreeMap, VecDeque};
+use std::ops::RangeInclusive;
 use std::sync::{Arc, Weak, mpsc};
 use std::time::{Duration, Instant};
 
@@ -172,11 +173,15 @@ impl Dispatcher {
         self.look(move |farm, now| farm.status(id, now)).await
     }
 
-    /// Returns the status of every calibration in progress, by id.
-    pub async fn statuses(&self) -> Result<BTreeMap<i64, CalibrationStatus>, Stopped> {
-        self.look(|farm, now| {
+    /// Returns the status of every calibration in progress with an id in a range, by id.
+    pub async fn statuses(
+        &self,
+        ids: RangeInclusive<i64>,
+    ) -> Result<BTreeMap<i64, CalibrationStatus>, Stopped> {
+        self.look(move |farm, now| {
             farm.ids()
                 .into_iter()
+                .filter(|id| ids.contains(id))
                 .filter_map(|id| Some((id, farm.status(id, now)?)))
                 .collect()
         })
