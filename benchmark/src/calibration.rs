@@ -28,6 +28,7 @@ pub fn calibrate(spec: Spec) -> Result<Calibration, StudyError> {
             };
             let computed = SimulationResult::new(model.evaluate(question.theta))?;
             calibration.complete(evaluation, computed, "benchmark")?;
+            calibration.step();
         }
     }
     Ok(calibration)

@@ -13,8 +13,13 @@ const PARTICLES: usize = 50_000;
 
 /// Returns the text of the job.
 pub fn job() -> String {
+    job_of(PARTICLES)
+}
+
+/// Returns the text of a job with a number of particles.
+pub fn job_of(particles: usize) -> String {
     format!(
-        "accept = [\"data_few\"]\n[model]\nkind = \"quasi_static\"\n[priors]\nlog10_p_ref = {{ uniform = [4.0, 5.6] }}\nkappa = 0.0\nn = {{ uniform = [0.8, 1.4] }}\nfriction_angle_deg = {{ uniform = [11.5, 37.3] }}\n[sampler]\nparticles = {PARTICLES}\n"
+        "accept = [\"data_few\"]\n[model]\nkind = \"quasi_static\"\n[priors]\nlog10_p_ref = {{ uniform = [4.0, 5.6] }}\nkappa = 0.0\nn = {{ uniform = [0.8, 1.4] }}\nfriction_angle_deg = {{ uniform = [11.5, 37.3] }}\n[sampler]\nparticles = {particles}\n"
     )
 }
 

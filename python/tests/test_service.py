@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import asyncio
 from pathlib import Path
+from typing import cast
 
 import pytest
 
 import grouser
 from grouser import aio
+from grouser._place import ServicePlace, listed
 
 from .conftest import Served, changed_example
 
@@ -131,3 +133,17 @@ def test_coroutines_do_the_same_beside_other_work(served: Served, folder: Path, 
         await asyncio.to_thread(cancel, longer.sync)
 
     asyncio.run(both())
+
+
+def test_a_long_list_is_asked_for_page_by_page(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("grouser._place.PAGE", 2)
+    entries = [{"id": number} for number in (1, 3, 4, 7)]
+    asked: list[int | None] = []
+
+    class Place:
+        def get(self, path: str, *, limit: int, after: int | None, archived: bool) -> list[dict[str, int]]:
+            asked.append(after)
+            return [entry for entry in entries if after is None or entry["id"] > after][:limit]
+
+    place = cast(ServicePlace, Place())
+    assert listed(place, "studies", archived=True) == entries and asked == [None, 3, 7]

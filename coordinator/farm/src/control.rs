@@ -29,7 +29,7 @@ pub enum ControlError {
 }
 
 /// A user's command on a calibration.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Control {
     /// Stops the calibration for good.
     Cancel,
@@ -40,4 +40,7 @@ pub enum Control {
         /// Whether evaluations without attempts left count as rejected; otherwise they get new attempts.
         skip_faults: bool,
     },
+    /// Goes on with workers of a version of the equations alone, whatever version the first result has pinned. Results of another version
+    /// are dropped.
+    ComputeWith(String),
 }

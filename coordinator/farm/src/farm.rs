@@ -1,16 +1,15 @@
 //! The farm: all calibrations in progress and all connected workers, and the assignment of evaluations to workers.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use shared::api::{CalibrationState, CalibrationStatus};
 use shared::exchange::{ExchangeRequest, ExchangeResponse};
-use shared::model::ModelVariant;
+use shared::model::{ModelVariant, equations_of};
 
 use super::control::{Control, ControlError};
 use super::lease_numbers::LeaseNumbers;
 use super::metrics::{FarmCounters, FarmMetrics};
 use super::progress::{self, Pace};
-use super::voting::includes;
 use super::worker_record::WorkerRecord;
 use crate::calibration::{Calibration, VerificationRule};
 use crate::lease::LeaseQueue;
@@ -29,11 +28,15 @@ pub struct Farm {
     pub(super) workers: BTreeMap<String, WorkerRecord>,
     /// Workers that compute wrongly, with the reason.
     pub(super) quarantine: BTreeMap<String, String>,
+    /// The connected workers that are quarantined.
+    pub(super) shut_out: BTreeSet<String>,
     /// Calibrations to replay without the results of quarantined workers, since the last call of [`Farm::take_rewinds`].
     pub(super) rewinds: Vec<i64>,
     pub(super) counters: FarmCounters,
     pub(super) facts: Vec<Fact>,
     pub(super) lease_numbers: LeaseNumbers,
+    /// The number of the last step of an engine.
+    pub(super) last_step: u64,
     pub(super) lease_ms: u64,
     pub(super) rule: VerificationRule,
 }
@@ -74,10 +77,12 @@ impl Farm {
             ended: BTreeMap::new(),
             workers: BTreeMap::new(),
             quarantine: BTreeMap::new(),
+            shut_out: BTreeSet::new(),
             rewinds: Vec::new(),
             counters: FarmCounters::default(),
             facts: Vec::new(),
             lease_numbers: LeaseNumbers::new(epoch),
+            last_step: 0,
             lease_ms,
             rule: VerificationRule::default(),
         }
@@ -142,6 +147,11 @@ impl Farm {
             workers: self.workers.len(),
             unconfirmed: self.calibrations.values().map(waiting).sum(),
             quarantined: self.quarantine.len(),
+            stepping: self
+                .calibrations
+                .values()
+                .filter(|e| e.calibration.is_stepping())
+                .count(),
         }
     }
 
@@ -151,15 +161,9 @@ impl Farm {
         self.remaining() > 0 || self.calibrations.values().any(second)
     }
 
-    /// Returns the number of workers that are not quarantined. Every exchange calls this function, so it loops over the few quarantined
-    /// workers and not over all.
+    /// Returns the number of workers that are not quarantined. Every exchange calls this function, so it loops over no workers.
     pub(super) fn able_workers(&self) -> usize {
-        let known = |name: &String| {
-            let from = self.workers.range(name.clone()..);
-            from.take_while(|(worker, _)| includes(name, worker)).count()
-        };
-        let quarantined: usize = self.quarantine.keys().map(known).sum();
-        self.workers.len().saturating_sub(quarantined)
+        self.workers.len() - self.shut_out.len()
     }
 
     fn remaining(&self) -> u64 {
@@ -210,6 +214,9 @@ impl Farm {
 
     /// Records a worker. Returns whether leases were lost: the worker sends a message without having received them.
     fn note_worker(&mut self, request: &ExchangeRequest, now_ms: u64) -> bool {
+        if !self.workers.contains_key(&request.worker) && self.quarantined(&request.worker).is_some() {
+            self.shut_out.insert(request.worker.clone());
+        }
         let record = self.workers.entry(request.worker.clone());
         let record = record.or_insert_with(|| WorkerRecord {
             model_version: request.model_version.clone(),
@@ -273,6 +280,7 @@ impl Farm {
         }
         self.workers
             .retain(|_, w| now_ms.saturating_sub(w.last_seen_ms) < WORKER_SILENCE_MS);
+        self.shut_out.retain(|name| self.workers.contains_key(name));
         self.ask_beside_slow_workers(now_ms);
         for id in self.ids() {
             self.settle(id, now_ms);
@@ -282,7 +290,7 @@ impl Farm {
     }
 
     /// Adds up busy time and removes finished calibrations.
-    fn account(&mut self, now_ms: u64) {
+    pub(super) fn account(&mut self, now_ms: u64) {
         for entry in self.calibrations.values_mut() {
             // A calibration without leases has no cost.
             let calibration = &entry.calibration;
@@ -341,6 +349,20 @@ impl Farm {
             (Control::Resume { skip_faults }, CalibrationState::Paused) => {
                 calibration.resume(skip_faults, &mut self.facts);
             }
+            (
+                Control::ComputeWith(version),
+                CalibrationState::Queued | CalibrationState::Running | CalibrationState::Paused,
+            ) => {
+                let version = calibration.spec.fit_variant.model_version(equations_of(&version));
+                let is_pinned = calibration.model_version.as_ref() == Some(&version);
+                match state {
+                    _ if !is_pinned => self.repin(id, version),
+                    CalibrationState::Paused => {
+                        return self.control(id, Control::Resume { skip_faults: false }, now_ms);
+                    }
+                    _ => {}
+                }
+            }
             (Control::Pause, _) => {
                 return Err(ControlError::WrongState {
                     id,
@@ -348,7 +370,7 @@ impl Farm {
                     verb: "paused",
                 });
             }
-            (Control::Resume { .. }, _) => {
+            (Control::Resume { .. } | Control::ComputeWith(_), _) => {
                 return Err(ControlError::WrongState {
                     id,
                     state,
@@ -356,7 +378,10 @@ impl Farm {
                 });
             }
         }
-        let state = calibration.state;
+        let state = self
+            .calibrations
+            .get(&id)
+            .map_or(state, |entry| entry.calibration.state);
         self.account(now_ms);
         Ok(state)
     }

@@ -7,7 +7,8 @@
 //! - `leasing`: the leases for a worker. `work_result`: the effect of its results.
 //! - `voting`: [`Voting`], identities in comparisons of answers.
 //! - `verification`: the consequences of disagreement between workers, and second leases beside slow ones.
-//! - [`dispatch`]: the thread of the farm. `pulse`: the activity of that thread.
+//! - `stepping`: the steps of engines that are due and taken.
+//! - [`dispatch`]: the thread of the farm. `compute`: the threads that take steps. `pulse`: the activity of the farm's thread.
 //! - `control`: the commands of a user on a calibration.
 //! - `demand`: the amount of work.
 //! - `lease_numbers`: numbers of leases.
@@ -17,6 +18,7 @@
 //! - `worker_record`, `metrics`: records of workers, and counters.
 
 pub mod calibration;
+mod compute;
 mod control;
 mod demand;
 pub mod dispatch;
@@ -29,6 +31,7 @@ mod progress;
 mod pulse;
 mod seal;
 mod share;
+mod stepping;
 mod verification;
 mod voting;
 mod work_result;

@@ -40,4 +40,6 @@ pub struct FarmMetrics {
     pub unconfirmed: usize,
     /// Workers that compute wrongly.
     pub quarantined: usize,
+    /// Calibrations whose engine takes a step, or waits for a thread to take it.
+    pub stepping: usize,
 }

@@ -2,10 +2,9 @@
 
 use std::collections::VecDeque;
 
-use inference::StageProgress;
-use shared::api::{CalibrationStatus, Position, Progress};
+use shared::api::{CalibrationStatus, Progress};
 
-use crate::calibration::{Calibration, CalibrationEngine};
+use crate::calibration::Calibration;
 
 /// The time over which the pace is averaged `[ms]`.
 const WINDOW_MS: u64 = 10_000;
@@ -84,43 +83,15 @@ pub(super) fn status(
         model_version: calibration.model_version.clone(),
         progress: Some(Progress {
             algorithm: calibration.spec.algorithm.name().to_owned(),
-            position: position(calibration.engine()),
+            position: calibration.engine().position(),
             evaluations: calibration.cost.evaluations,
             rejected: calibration.cost.rejected,
             step_done: (queue.len() - queue.unleased() - queue.leased()) as u64,
             step_size: queue.len() as u64,
-            search: match calibration.engine() {
-                CalibrationEngine::Discovery(search) => Some(search.progress()),
-                _ => None,
-            },
+            search: calibration.engine().search(),
             evaluations_per_s: per_second,
             remaining_s: remaining_s(calibration, per_second),
         }),
-    }
-}
-
-fn position(engine: &CalibrationEngine) -> Position {
-    match engine {
-        CalibrationEngine::Sampler(sampler) => sampler_position(sampler.progress()),
-        CalibrationEngine::Emulated(sampler) => sampler_position(sampler.progress()),
-        CalibrationEngine::Fit(fit) => Position::Fit {
-            steps: fit.steps() as u32,
-        },
-        CalibrationEngine::Evolution(evolution) => Position::Evolution {
-            generations: evolution.history().len() as u32,
-        },
-        CalibrationEngine::Discovery(search) => Position::Search {
-            rounds: search.round() as u32,
-        },
-    }
-}
-
-fn sampler_position(now: StageProgress) -> Position {
-    Position::Sampler {
-        stage: now.stage as u32,
-        tempering_exponent: now.tempering_exponent,
-        step: now.step as u32,
-        acceptance: now.acceptance,
     }
 }
 
@@ -142,9 +113,8 @@ fn remaining_s(calibration: &Calibration, per_second: f64) -> Option<f64> {
 pub(super) fn evaluations_left(calibration: &Calibration) -> Option<f64> {
     let exponents: Vec<f64> = calibration
         .engine()
-        .stages()
-        .iter()
-        .map(|s| s.tempering_exponent)
+        .exponents()
+        .into_iter()
         .filter(|&b| b > 0.0)
         .collect();
     let (&first, &last) = (exponents.first()?, exponents.last()?);

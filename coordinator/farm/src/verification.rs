@@ -66,6 +66,8 @@ impl Farm {
         self.quarantine
             .insert(convicted.clone(), reason(&convicted, calibration, evaluation));
         let is_convicted = |worker: &str| includes(&convicted, worker);
+        let workers = self.workers.keys().filter(|worker| is_convicted(worker));
+        self.shut_out.extend(workers.cloned());
         let in_progress = self
             .calibrations
             .iter_mut()
@@ -81,10 +83,7 @@ impl Farm {
                 worker: convicted.clone(),
                 width: entry.calibration.spec.algorithm.width(),
             });
-            entry.calibration.queue = Default::default();
-            entry.calibration.witness.second = Default::default();
-            // A replay in progress has read results that are dropped now.
-            entry.rewinds += 1;
+            entry.await_replay();
             self.rewinds.push(id);
         }
         // This fact comes last. A crash that loses it leaves a worker that can be convicted again.
@@ -174,6 +173,16 @@ impl Farm {
 }
 
 impl Entry {
+    /// Ends all leases until the calibration is replayed, because results of it are dropped.
+    pub(super) fn await_replay(&mut self) {
+        self.calibration.queue = Default::default();
+        self.calibration.witness.second = Default::default();
+        // A replay in progress has read results that are dropped now. One that is due and not in progress is this one.
+        if !std::mem::take(&mut self.is_replay_due) {
+            self.rewinds += 1;
+        }
+    }
+
     /// Returns the age at which a lease for a second answer is no longer waited for at the end of the calibration `[ms]`.
     fn hung_ms(&self, lease_ms: u64) -> u64 {
         HUNG_TIMES * self.pace.mean_lease_ms().unwrap_or_default() + lease_ms

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use shared::api::CalibrationState;
 use shared::exchange::WorkResult;
 use shared::model::equations_of;
 
@@ -172,6 +173,24 @@ impl Farm {
         calibration.model_version = Some(version.clone());
         let calibration = id;
         self.facts.push(Fact::ModelVersion { calibration, version });
+    }
+
+    /// Pins a calibration to the version that its operator has chosen, and lets it run. Results of another version are dropped, and the
+    /// calibration is replayed from what remains: nothing.
+    pub(super) fn repin(&mut self, id: i64, version: String) {
+        let Some(entry) = self.calibrations.get_mut(&id) else {
+            return;
+        };
+        entry.calibration.model_version = Some(version.clone());
+        let calibration = id;
+        self.facts.push(Fact::Repinned { calibration, version });
+        entry.await_replay();
+        self.rewinds.push(id);
+        if entry.calibration.state == CalibrationState::Paused {
+            entry
+                .calibration
+                .change_state(CalibrationState::Running, None, &mut self.facts);
+        }
     }
 
     /// Hands the facts of a result to the store.

@@ -2,7 +2,7 @@
 
 use farm::calibration::{SimulationResult, VerificationRule};
 use farm::{Control, Farm};
-use record::{Fact, SealKey};
+use record::{Fact, Quarantine, SealKey, Stored};
 use shared::api::CalibrationState;
 use shared::exchange::{ExchangeRequest, ExchangeResponse, Lease, WorkResult};
 use shared::outcome::{Fault, Observables, Outcome};
@@ -177,6 +177,7 @@ fn late_results_of_a_calibration_that_ends_in_its_replay_are_compared() {
             let outcome = case.answers[&evaluation].outcome.clone();
             let computed = SimulationResult::new(outcome).expect("no faults");
             calibration.complete(evaluation, computed, "a").expect("it fits");
+            calibration.step();
         }
     }
     let mut after = Farm::new(2, LEASE_MS);
@@ -351,4 +352,74 @@ fn a_version_that_few_workers_compute_pins_nothing() {
     // Where nobody else is there, it counts.
     let (mut farm, _) = self::farm(&[SMALL]);
     assert_eq!(farm.exchange(invented, 0).leases.len(), 5);
+}
+
+#[test]
+fn the_operator_says_which_version_goes_on_where_an_invented_one_was_alone() {
+    let (mut farm, cases) = farm(&[SMALL]);
+    let case = &cases[SMALL][0];
+    let of = |worker: &str, version: &str, want| ExchangeRequest {
+        model_version: version.into(),
+        ..request(worker, want)
+    };
+    let leases = farm.exchange(of("liar", "invented-1", 2), 0).leases;
+    let answered = |lease: &Lease, worker: &str, version: &str| ExchangeRequest {
+        results: vec![answer(lease, case.answers[&lease.evaluation].outcome.clone())],
+        ..of(worker, version, 0)
+    };
+    farm.exchange(answered(&leases[0], "liar", "invented-1"), 0);
+    let refused = farm.exchange(of("honest", EQUATIONS, 2), 0).refused;
+    assert!(refused.is_some_and(|why| why.contains("was begun with model version invented-1")));
+    farm.take_facts();
+    let command = Control::ComputeWith(EQUATIONS.into());
+    let state = farm.control(1, command.clone(), 0).expect("it runs");
+    assert_eq!(state, CalibrationState::Running);
+    let pinned = case.spec.fit_variant.model_version(EQUATIONS);
+    let facts = farm.take_facts();
+    assert!(
+        matches!(&facts[..], [Fact::Repinned { calibration: 1, version }] if *version == pinned),
+        "{facts:?}"
+    );
+    assert_eq!(farm.take_rewinds(), [1]);
+    assert!(
+        farm.exchange(of("honest", EQUATIONS, 2), 0).leases.is_empty(),
+        "before the replay"
+    );
+    let stored = Stored {
+        state: Some(state),
+        model_version: Some(pinned),
+        ..Stored::default()
+    };
+    let mut again = case.begin(1).expect("the job is valid");
+    let facts = again.replay(stored).expect("nothing is stored");
+    farm.add(again, SealKey([1; 16]), facts, 0);
+    farm.exchange(answered(&leases[1], "liar", "invented-1"), 0);
+    assert!(
+        farm.take_facts().is_empty(),
+        "a late result of the other version does not count"
+    );
+    assert!(farm.exchange(of("liar", "invented-1", 2), 0).leases.is_empty());
+    assert_eq!(farm.exchange(of("honest", EQUATIONS, 2), 0).leases.len(), 2);
+    // The version that computes already drops nothing.
+    farm.take_facts();
+    farm.control(1, command, 0).expect("it runs");
+    assert!(farm.take_facts().is_empty() && farm.take_rewinds().is_empty());
+}
+
+#[test]
+fn workers_that_are_shut_out_are_not_counted_as_able_under_any_of_their_names() {
+    let out = |worker: &str| Quarantine {
+        worker: worker.into(),
+        calibration: 1,
+        evaluation: 0,
+    };
+    // Names of before tokens, of a worker with a token, and of all workers of a token.
+    let quarantine = vec![out("old"), out("lab/a"), out("other/")];
+    let mut farm = Farm::new(1, LEASE_MS).with_quarantine(quarantine);
+    for worker in ["lab/old", "old", "lab/a", "other/x"] {
+        assert_eq!(farm.exchange(request(worker, 0), 0).workers, 0, "{worker}");
+    }
+    assert_eq!(farm.exchange(request("lab/b", 0), 0).workers, 1);
+    farm.tick(70_000);
+    assert_eq!(farm.exchange(request("lab/b", 0), 70_000).workers, 1);
 }

@@ -97,6 +97,9 @@ fn calibrate(case: &Case, names: &[String], liars: Liars, rule: &VerificationRul
         });
         results.insert(worker, answers.collect());
         farm.tick(now_ms);
+        for step in farm.take_steps() {
+            farm.stepped(step.run(), now_ms);
+        }
         for fact in farm.take_facts() {
             ledger.push(Entry::Fact(fact));
         }

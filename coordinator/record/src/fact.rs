@@ -114,6 +114,13 @@ pub enum Fact {
         /// Pinned version of the model.
         version: String,
     },
+    /// The operator has pinned another version of the equations; all results of the calibration are dropped.
+    Repinned {
+        /// Id of the calibration.
+        calibration: i64,
+        /// Pinned version of the model.
+        version: String,
+    },
     /// A machine failed at an evaluation.
     Fault {
         /// Id of the calibration.

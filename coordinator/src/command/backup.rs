@@ -4,7 +4,7 @@ use anyhow::bail;
 
 use super::output::say;
 use crate::config::BackupArguments;
-use store::{Reader, is_server, name_of};
+use store::{IdPage, Reader, is_server, name_of};
 
 pub(super) async fn backup(config: &BackupArguments) -> anyhow::Result<()> {
     if is_server(&config.store.store) {
@@ -16,7 +16,7 @@ pub(super) async fn backup(config: &BackupArguments) -> anyhow::Result<()> {
     let reader = Reader::open(&config.store.store).await?;
     let bytes = reader.back_up(&config.file).await?;
     let copy = Reader::open(&config.file.display().to_string()).await?;
-    let (studies, calibrations) = (copy.studies().await?, copy.calibrations().await?);
+    let (studies, calibrations) = (copy.studies().await?, copy.calibrations(IdPage::ALL).await?);
     Ok(say(&format!(
         "{}: {:.1} MB, studies: {}, calibrations: {}\n",
         config.file.display(),

@@ -8,10 +8,11 @@ use super::job_on_disk;
 use super::output::say;
 use crate::config::CheckArguments;
 use crate::embedded::{Evaluate, LocalModels};
-use farm::calibration::{Calibration, CalibrationEngine, CalibrationIdentity, SimulationResult};
+use farm::calibration::{Calibration, CalibrationIdentity, SimulationResult};
 use job::{AlgorithmSettings, Spec, confounded_orders};
 use report::{model_limits, terminal};
 use search::untried::additions;
+use shared::api::Position;
 
 /// The number of particles of the pilot. It suffices to fit the proposals of the stages, whose number hardly depends on it.
 const PILOT_PARTICLES: usize = 300;
@@ -208,12 +209,11 @@ fn pilot(mut spec: Spec, models: &LocalModels) -> anyhow::Result<Pilot> {
         runs,
         seconds_per_evaluation: simulated_s / evaluations as f64,
         rejected_share: calibration.cost.rejected as f64 / evaluations as f64,
-        exponent: match calibration.engine() {
-            CalibrationEngine::Sampler(sampler) => sampler.progress().tempering_exponent,
-            CalibrationEngine::Emulated(sampler) => sampler.progress().tempering_exponent,
-            CalibrationEngine::Fit(_) | CalibrationEngine::Evolution(_) | CalibrationEngine::Discovery(_) => {
-                1.0
-            }
+        exponent: match calibration.engine().position() {
+            Position::Sampler {
+                tempering_exponent, ..
+            } => tempering_exponent,
+            Position::Fit { .. } | Position::Evolution { .. } | Position::Search { .. } => 1.0,
         },
         complete: calibration.engine().finding().is_some(),
     })
@@ -246,6 +246,7 @@ fn simulate(calibration: &mut Calibration, models: &LocalModels) -> anyhow::Resu
             let outcome = model.evaluate(question.theta);
             simulated_s += start.elapsed().as_secs_f64();
             calibration.complete(evaluation, SimulationResult::new(outcome)?, "pilot")?;
+            calibration.step();
         }
     }
     Ok(simulated_s)

@@ -23,6 +23,7 @@ use record::CalibrationRow;
 use report::{StudyFile, terminal};
 use result::DiscoveryRound;
 use result::discovery::effect_file;
+use store::IdPage;
 
 /// Interval between two updates of the display.
 const LOOK: Duration = Duration::from_millis(100);
@@ -300,7 +301,7 @@ async fn watch_until_over(
             reason = &mut failure => bail!("the local workers ended: {reason}"),
             () = tokio::time::sleep(LOOK) => {}
         }
-        let mut statuses = service.list(true).await?;
+        let mut statuses = service.list(true, IdPage::ALL).await?;
         statuses.retain(|status| status.study == study);
         let members = statuses.len();
         statuses.retain(|status| !status.state.is_final());

@@ -10,6 +10,26 @@ use crate::config::{ClientArguments, SourceArguments, TargetArguments};
 use crate::http::InProcess;
 use crate::service::Service;
 
+/// The number of entries of a list that are asked for at a time.
+const LIST_PAGE: usize = 1_000;
+
+/// What of a list is wanted.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ListPart {
+    /// The largest number of entries.
+    pub(super) limit: usize,
+    /// The number of the entry before the first one.
+    pub(super) after: Option<i64>,
+}
+
+impl ListPart {
+    /// The whole list.
+    pub(super) const ALL: ListPart = ListPart {
+        limit: usize::MAX,
+        after: None,
+    };
+}
+
 /// A service or a folder.
 pub(super) enum Place {
     /// A service, which is reached over HTTP.
@@ -73,6 +93,37 @@ impl Place {
         self.value("GET", path, None).await
     }
 
+    /// Requests a list page by page, so that the service never makes the whole of a long one.
+    ///
+    /// # Arguments
+    /// - `path`: with its query. `part`: what of the list is wanted. `id`: the number of an entry.
+    pub(super) async fn list<T: DeserializeOwned>(
+        &self,
+        path: &str,
+        part: ListPart,
+        id: impl Fn(&T) -> i64,
+    ) -> anyhow::Result<Vec<T>> {
+        let separator = if path.contains('?') { '&' } else { '?' };
+        let mut entries: Vec<T> = Vec::new();
+        let mut after = part.after;
+        loop {
+            let limit = part.limit.saturating_sub(entries.len()).min(LIST_PAGE);
+            if limit == 0 {
+                return Ok(entries);
+            }
+            let after_last = after.map_or_else(String::new, |after| format!("&after={after}"));
+            let page: Vec<T> = self
+                .get(&format!("{path}{separator}limit={limit}{after_last}"))
+                .await?;
+            let is_last = page.len() < limit;
+            after = page.last().map(&id).or(after);
+            entries.extend(page);
+            if is_last {
+                return Ok(entries);
+            }
+        }
+    }
+
     pub(super) async fn delete<T: DeserializeOwned>(&self, path: &str) -> anyhow::Result<T> {
         self.value("DELETE", path, None).await
     }
@@ -90,7 +141,11 @@ impl Place {
         if let Some(id) = target.id {
             return Ok(id);
         }
-        let statuses: Vec<CalibrationStatus> = self.get("/v1/calibrations").await?;
+        let statuses: Vec<CalibrationStatus> = self
+            .list("/v1/calibrations", ListPart::ALL, |status: &CalibrationStatus| {
+                status.id
+            })
+            .await?;
         match statuses.as_slice() {
             [first, rest @ ..] if rest.iter().all(|status| status.study == first.study) => Ok(first.id),
             [] => bail!("there is no calibration"),
@@ -107,6 +162,13 @@ impl Place {
         let id = self.id(target).await?;
         self.get(&format!("/v1/calibrations/{id}/{part}")).await
     }
+}
+
+/// Returns the query of a path with one key.
+pub(super) fn query(key: &str, value: &str) -> anyhow::Result<String> {
+    // Only the query of this address is used.
+    let url = reqwest::Url::parse_with_params("http://localhost", [(key, value)])?;
+    Ok(format!("?{}", url.query().unwrap_or_default()))
 }
 
 /// The HTTP client of a service.

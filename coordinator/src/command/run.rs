@@ -12,6 +12,7 @@ use super::output::note;
 use crate::config::RunArguments;
 use job::Spec;
 use report::model_limits;
+use store::IdPage;
 
 pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
     let job = job_on_disk::read(&config.file, &[])?;
@@ -55,7 +56,7 @@ pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
 /// Returns the study of this folder: the stored one, if it has the same job, or a new one.
 async fn take_up(job: &JobOnDisk, folder: &Folder) -> anyhow::Result<i64> {
     let service = &folder.service;
-    let rows = service.store().reader().calibrations().await?;
+    let rows = service.store().reader().calibrations(IdPage::ALL).await?;
     let mut rows = rows.into_iter().map(|(_, row)| row);
     let Some(first) = rows.next() else {
         for spec in std::iter::once(&job.spec).chain(&job.alternatives) {

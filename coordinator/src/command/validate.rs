@@ -21,6 +21,7 @@ use record::CalibrationRow;
 use report::terminal;
 use result::FinishedCalibration;
 use result::validation::{LeftOutLevel, ValidatedLevel, Validation};
+use store::IdPage;
 
 /// Names of job and experiment in messages.
 const FILES: [&str; 2] = ["job.toml", "experiment.toml"];
@@ -127,7 +128,7 @@ impl Rest {
     async fn earlier(&self, edited: &FileSet, folder: &Folder) -> anyhow::Result<Option<CalibrationRow>> {
         let service = &folder.service;
         let equations = folder.equations_of(&self.calibration.spec).await?;
-        for (_, row) in service.store().reader().calibrations().await? {
+        for (_, row) in service.store().reader().calibrations(IdPage::ALL).await? {
             let row = row?;
             let pinned = row.model_version.as_deref().map(equations_of);
             let is_same_version = pinned.is_none() || pinned == equations.as_deref();

@@ -14,7 +14,7 @@ use shared::text_file::read_text;
 
 use super::job_on_disk;
 use super::output::say;
-use super::place::Place;
+use super::place::{self, ListPart, Place};
 use crate::config::{
     ListArguments, ReportArguments, ResumeArguments, StudyArguments, SubmitArguments, TargetArguments,
 };
@@ -76,8 +76,31 @@ async fn added_effects(config: &SubmitArguments, service: &Place) -> anyhow::Res
 pub(super) async fn list(config: &ListArguments) -> anyhow::Result<()> {
     let place = Place::open(&config.source).await?;
     let which = if config.archived { "?archived=true" } else { "" };
-    let statuses: Vec<CalibrationStatus> = place.get(&format!("/v1/calibrations{which}")).await?;
-    let studies: Vec<StudyListItem> = place.get(&format!("/v1/studies{which}")).await?;
+    let part = ListPart {
+        limit: config.limit.unwrap_or(usize::MAX),
+        after: config.after,
+    };
+    let path = format!("/v1/calibrations{which}");
+    let statuses: Vec<CalibrationStatus> = place
+        .list(&path, part, |status: &CalibrationStatus| status.id)
+        .await?;
+    // Studies have the order of their first calibrations.
+    let shown = statuses
+        .iter()
+        .map(|status| status.study)
+        .filter(|&study| study > 0);
+    let part = match (shown.clone().min(), shown.max()) {
+        (Some(first), Some(last)) => ListPart {
+            limit: usize::try_from(last - first + 1)?,
+            after: Some(first - 1),
+        },
+        _ => ListPart {
+            limit: 0,
+            after: None,
+        },
+    };
+    let path = format!("/v1/studies{which}");
+    let studies: Vec<StudyListItem> = place.list(&path, part, |study: &StudyListItem| study.id).await?;
     Ok(say(&terminal::list(&statuses, &studies))?)
 }
 
@@ -88,7 +111,8 @@ pub(super) async fn status(target: &TargetArguments) -> anyhow::Result<()> {
     Ok(say(&terminal::status_table(&[status]))?)
 }
 
-pub(super) async fn control(target: &TargetArguments, verb: &str) -> anyhow::Result<()> {
+/// Sends a command on a calibration, with the query of its path.
+pub(super) async fn control(target: &TargetArguments, verb: &str, query: &str) -> anyhow::Result<()> {
     let place = Place::open(&target.source).await?;
     if let Place::Folder { .. } = place {
         bail!(
@@ -97,19 +121,19 @@ pub(super) async fn control(target: &TargetArguments, verb: &str) -> anyhow::Res
     }
     let id = place.id(target).await?;
     let answer: serde_json::Value = place
-        .post(&format!("/v1/calibrations/{id}/{verb}"), &json!({}))
+        .post(&format!("/v1/calibrations/{id}/{verb}{query}"), &json!({}))
         .await?;
     let state = answer["state"].as_str().unwrap_or("in an unknown state");
     Ok(say(&format!("calibration {id} is {state}\n"))?)
 }
 
 pub(super) async fn resume(config: &ResumeArguments) -> anyhow::Result<()> {
-    let verb = if config.skip_faults {
-        "resume?skip_faults=true"
-    } else {
-        "resume"
+    let query = match &config.version {
+        Some(version) => place::query("version", version)?,
+        None if config.skip_faults => "?skip_faults=true".to_owned(),
+        None => String::new(),
     };
-    control(&config.target, verb).await
+    control(&config.target, "resume", &query).await
 }
 
 /// Archives or restores a study.

@@ -342,6 +342,12 @@ pub struct ListArguments {
     /// Lists those of archived studies too.
     #[arg(long)]
     pub archived: bool,
+    /// Lists this many at most, the oldest first.
+    #[arg(long, value_name = "N")]
+    pub limit: Option<usize>,
+    /// Lists those with higher numbers than this one, as of the last line of an earlier list.
+    #[arg(long, value_name = "ID")]
+    pub after: Option<i64>,
     #[command(flatten)]
     pub source: SourceArguments,
 }
@@ -364,8 +370,11 @@ pub struct ResumeArguments {
     #[command(flatten)]
     pub target: TargetArguments,
     /// Count evaluations that used up their attempts as rejected; else they are tried again.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "version")]
     pub skip_faults: bool,
+    /// Go on with workers of this version of the equations alone; results of another version are dropped.
+    #[arg(long, value_name = "VERSION")]
+    pub version: Option<String>,
 }
 
 /// Write the report of a calibration.

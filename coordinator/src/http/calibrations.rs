@@ -7,13 +7,16 @@ use axum::extract::State;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{Html, IntoResponse};
 use serde::Deserialize;
-use shared::api::{CalibrationCreated, CalibrationState, CalibrationStatus, ErrorBody, NewCalibration};
+use shared::api::{
+    CalibrationCreated, CalibrationState, CalibrationStatus, ErrorBody, ErrorKind, NewCalibration,
+};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::access::Caller;
 use super::error::{Body, HttpError, Id, Query};
-use super::studies::WithArchived;
+use super::list_page::StudiesPage;
+use super::work::LONGEST_NAME;
 use crate::service::Service;
 use export::InferenceData;
 use farm::Control;
@@ -85,15 +88,17 @@ async fn create(
 
 /// Lists the calibrations.
 ///
-/// Every calibration, oldest first; those of archived studies with `archived=true` alone.
+/// Every calibration, or a page of them, oldest first; those of archived studies with `archived=true` alone.
 #[utoipa::path(get, path = "/calibrations", operation_id = "list_calibrations", tag = "calibrations",
-    params(("archived" = Option<bool>, Query, description = "whether those of archived studies are listed too")), responses(
+    params(("archived" = Option<bool>, Query, description = "whether those of archived studies are listed too"),
+        ("limit" = Option<u32>, Query, minimum = 1, maximum = 10000, description = "the largest number of entries; without it, all"),
+        ("after" = Option<i64>, Query, description = "the number of the last entry of the page before")), responses(
     (status = 200, description = "calibrations with state and progress", body = Vec<CalibrationStatus>)))]
 async fn list(
     State(service): State<Service>,
-    Query(which): Query<WithArchived>,
+    Query(which): Query<StudiesPage>,
 ) -> Result<Json<Vec<CalibrationStatus>>, HttpError> {
-    Ok(Json(service.list(which.archived).await?))
+    Ok(Json(service.list(which.archived, which.page()?).await?))
 }
 
 /// State and progress of a calibration.
@@ -120,7 +125,7 @@ async fn control(
     control: Control,
     by: &Caller,
 ) -> Result<Json<NewState>, HttpError> {
-    let state = service.control(id, control).await?;
+    let state = service.control(id, control.clone()).await?;
     let name = service.calibration_row(id).await?.name;
     tracing::info!(calibration = id, name, %by, state = state.name(), ?control, "told");
     Ok(Json(NewState { state }))
@@ -156,13 +161,17 @@ async fn pause(State(service): State<Service>, by: Caller, Id(id): Id) -> Result
 struct Resume {
     #[serde(default)]
     skip_faults: bool,
+    version: Option<String>,
 }
 
 /// Resumes a paused calibration.
 ///
-/// Evaluations that had used up their attempts are tried again; with `skip_faults=true` they count as rejected.
+/// Evaluations that had used up their attempts are tried again; with `skip_faults=true` they count as rejected. With
+/// `version`, workers that compute this version of the equations go on, whatever version a first result has pinned:
+/// results of another version are dropped. The calibration need not be paused for that.
 #[utoipa::path(post, path = "/calibrations/{id}/resume", operation_id = "resume_calibration", tag = "calibrations",
-    params(("id" = i64, Path), ("skip_faults" = Option<bool>, Query, description = "whether evaluations that used up their attempts count as rejected")), responses(
+    params(("id" = i64, Path), ("skip_faults" = Option<bool>, Query, description = "whether evaluations that used up their attempts count as rejected"),
+        ("version" = Option<String>, Query, description = "the version of the equations that computes on, as `/v1/workers` states it")), responses(
     (status = 200, description = "its new state", body = NewState),
     (status = 404, body = ErrorBody),
     (status = 409, body = ErrorBody)))]
@@ -173,7 +182,23 @@ async fn resume(
     Query(resume): Query<Resume>,
 ) -> Result<Json<NewState>, HttpError> {
     let skip_faults = resume.skip_faults;
-    control(&service, id, Control::Resume { skip_faults }, &by).await
+    let command = match resume.version {
+        None => Control::Resume { skip_faults },
+        Some(_) if skip_faults => {
+            let message =
+                "version and skip_faults exclude each other: another version tries every evaluation again";
+            return Err(HttpError::new(ErrorKind::InvalidBody, message));
+        }
+        Some(version) if version.is_empty() || version.len() > LONGEST_NAME => {
+            let message = format!(
+                "version of {} bytes must have 1 to {LONGEST_NAME} bytes",
+                version.len()
+            );
+            return Err(HttpError::new(ErrorKind::InvalidBody, message));
+        }
+        Some(version) => Control::ComputeWith(version),
+    };
+    control(&service, id, command, &by).await
 }
 
 /// Stages of the sampler so far.

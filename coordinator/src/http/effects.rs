@@ -13,7 +13,8 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::access::Caller;
-use super::error::{Body, HttpError, Name};
+use super::error::{Body, HttpError, Name, Query};
+use super::list_page::NamesPage;
 use crate::effect::EffectCard;
 use crate::effect::signature::{Signature, signature};
 use crate::service::Service;
@@ -55,15 +56,22 @@ struct EffectAdded {
 /// First come the effects of the library in the order of evaluation, then the last versions of the effects that users have
 /// added, by name.
 #[utoipa::path(get, path = "/effects", operation_id = "list_effects", tag = "effects",
+    params(
+        ("limit" = Option<u32>, Query, minimum = 1, maximum = 10000, description = "the largest number of entries; without it, all"),
+        ("after" = Option<String>, Query, description = "the name of the last entry of the page before")),
     responses((status = 200, description = "cards of the effects", body = Vec<EffectCard>)))]
-async fn list(State(service): State<Service>) -> Result<Json<Vec<EffectCard>>, HttpError> {
+async fn list(
+    State(service): State<Service>,
+    Query(which): Query<NamesPage>,
+) -> Result<Json<Vec<EffectCard>>, HttpError> {
     let added = service.store().reader().user_effects().await?;
     let cards = tokio::task::spawn_blocking(move || {
         let library = catalogue().iter().map(|effect| Ok(EffectCard::new(effect)));
         let added = added
             .iter()
             .map(|stored| Ok(EffectCard::user(&read(stored)?, stored.version.version)));
-        library.chain(added).collect::<Result<_, HttpError>>()
+        let cards = library.chain(added).collect::<Result<Vec<_>, HttpError>>()?;
+        which.cut(cards, |card| &card.name)
     });
     Ok(Json(cards.await.map_err(|_| Stopped)??))
 }

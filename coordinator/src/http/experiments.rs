@@ -9,7 +9,8 @@ use shared::api::{ErrorBody, ExperimentCreated, NewExperiment};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::error::{Body, HttpError, Id};
+use super::error::{Body, HttpError, Id, Query};
+use super::list_page::NumbersPage;
 use crate::service::Service;
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
@@ -56,11 +57,17 @@ struct ExperimentFiles {
 
 /// Lists the experiments.
 ///
-/// Every experiment, oldest first, with the studies that have a calibration on it.
+/// Every experiment, or a page of them, oldest first, with the studies that have a calibration on it.
 #[utoipa::path(get, path = "/experiments", operation_id = "list_experiments", tag = "experiments",
+    params(
+        ("limit" = Option<u32>, Query, minimum = 1, maximum = 10000, description = "the largest number of entries; without it, all"),
+        ("after" = Option<i64>, Query, description = "the number of the last entry of the page before")),
     responses((status = 200, description = "experiments with their studies", body = Vec<ListedExperiment>)))]
-async fn list(State(service): State<Service>) -> Result<Json<Vec<ListedExperiment>>, HttpError> {
-    let experiments = service.store().reader().experiments().await?;
+async fn list(
+    State(service): State<Service>,
+    Query(which): Query<NumbersPage>,
+) -> Result<Json<Vec<ListedExperiment>>, HttpError> {
+    let experiments = service.store().reader().experiments(which.page()?).await?;
     let listed = experiments
         .into_iter()
         .map(|(id, studies)| ListedExperiment { id, studies });

@@ -93,6 +93,11 @@ impl Figures {
             farm.calibrations,
         );
         self.gauge(
+            "steps_under_way",
+            "Calibrations whose next round is being computed",
+            farm.stepping,
+        );
+        self.gauge(
             "workers_connected",
             "Workers heard of in the last minute",
             farm.workers,
@@ -179,17 +184,17 @@ struct Health {
     status: &'static str,
     /// Version of the coordinator.
     version: &'static str,
-    /// How long the farm's thread has been at its present step `[s]`: exchanges and answers about calibrations wait for its end.
+    /// How long the farm's thread has been at its present message `[s]`: exchanges and answers about calibrations wait for its end.
     farm_step_s: f64,
 }
 
 /// Whether the service works.
 ///
-/// Answers while farm and store work, also in the middle of a long step of the farm; needs no token.
+/// Answers while farm and store work, without waiting for either; needs no token.
 #[utoipa::path(get, path = "/health", operation_id = "get_health", tag = "service", security(()),
     responses((status = 200, description = "it works", body = Health)))]
 async fn health(State(service): State<Service>) -> Result<Json<Health>, HttpError> {
-    // The answer does not query farm and store: a large step of a sampler takes seconds, and a restart of the service would only delay it.
+    // The answer does not query farm and store: a restart of the service would only delay what keeps them busy.
     let step = service.dispatcher().pulse().step().ok_or(Stopped)?;
     if !service.store().is_read_only() && service.store().writer().has_ended() {
         return Err(StoreError::Stopped.into());

@@ -10,6 +10,7 @@ use utoipa_axum::routes;
 
 use super::access::Caller;
 use super::error::{Body, HttpError, Id, Query};
+use super::list_page::StudiesPage;
 use super::unchanged;
 use crate::service::Service;
 use record::StudyDetails;
@@ -24,28 +25,22 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(describe))
 }
 
-/// Whether archived studies are listed too.
-#[derive(Debug, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct WithArchived {
-    #[serde(default)]
-    pub(super) archived: bool,
-}
-
 /// Lists the studies.
 ///
-/// Every study, oldest first; archived ones with `archived=true` alone. Error and verdict of a study that has just
+/// Every study, or a page of them, oldest first; archived ones with `archived=true` alone. Error and verdict of a study that has just
 /// changed are null until they are computed. The answer has a tag, and is not sent again to who has it.
 #[utoipa::path(get, path = "/studies", operation_id = "list_studies", tag = "studies",
-    params(("archived" = Option<bool>, Query, description = "whether archived studies are listed too")), responses(
+    params(("archived" = Option<bool>, Query, description = "whether archived studies are listed too"),
+        ("limit" = Option<u32>, Query, minimum = 1, maximum = 10000, description = "the largest number of entries; without it, all"),
+        ("after" = Option<i64>, Query, description = "the number of the last entry of the page before")), responses(
     (status = 200, description = "studies with state, error and verdict", body = Vec<StudyListItem>),
     (status = 304, description = "the client has this answer: `If-None-Match` names its tag")))]
 async fn list(
     State(service): State<Service>,
-    Query(which): Query<WithArchived>,
+    Query(which): Query<StudiesPage>,
     headers: HeaderMap,
 ) -> Result<Response, HttpError> {
-    unchanged::answer(&headers, &service.studies(which.archived).await?)
+    unchanged::answer(&headers, &service.studies(which.archived, which.page()?).await?)
 }
 
 /// Deletes a study for good.

@@ -16,7 +16,8 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use super::access::Caller;
-use super::error::{HttpError, Name};
+use super::error::{HttpError, Name, Query};
+use super::list_page::NamesPage;
 use crate::service::Service;
 use farm::WorkerRecord;
 
@@ -25,7 +26,7 @@ const LONGEST_WAIT_MS: u64 = 30_000;
 /// The largest number of leases in one answer.
 const MAX_WANTED: u32 = 10_000;
 /// The longest name of a worker, or of the version of its equations `[bytes]`.
-const LONGEST_NAME: usize = 200;
+pub(super) const LONGEST_NAME: usize = 200;
 /// The longest name of an external model, which may contain a URL `[bytes]`.
 const LONGEST_MODEL: usize = 400;
 /// The largest number of external models of a worker.
@@ -202,7 +203,14 @@ async fn demand(State(service): State<Service>) -> Result<Json<WorkDemand>, Http
 ///
 /// Those heard of lately, by name; of one that computes wrongly, why it is quarantined.
 #[utoipa::path(get, path = "/workers", operation_id = "list_workers", tag = "work",
+    params(
+        ("limit" = Option<u32>, Query, minimum = 1, maximum = 10000, description = "the largest number of entries; without it, all"),
+        ("after" = Option<String>, Query, description = "the name of the last entry of the page before")),
     responses((status = 200, description = "workers by name", body = BTreeMap<String, WorkerRecord>)))]
-async fn workers(State(service): State<Service>) -> Result<Json<BTreeMap<String, WorkerRecord>>, HttpError> {
-    Ok(Json(service.dispatcher().workers().await?))
+async fn workers(
+    State(service): State<Service>,
+    Query(which): Query<NamesPage>,
+) -> Result<Json<BTreeMap<String, WorkerRecord>>, HttpError> {
+    let workers = service.dispatcher().workers().await?;
+    Ok(Json(which.cut_sorted(workers)?))
 }

@@ -1,6 +1,6 @@
 //! The service: store and farm together, for lists, status, control and results of calibrations.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use shared::api::{CalibrationState, CalibrationStatus};
@@ -19,7 +19,7 @@ use farm::dispatch::Dispatcher;
 use farm::{Control, ControlError, Farm};
 use job::Spec;
 use record::CalibrationRow;
-use store::{Store, StoreError};
+use store::{IdPage, ListedCalibration, Store, StoreError};
 
 /// The number of facts waiting for the store above which workers must wait.
 const BACKLOG: u64 = 200_000;
@@ -148,24 +148,59 @@ impl Service {
         status
     }
 
-    /// Returns the status of every calibration, oldest first; those of archived studies on request.
-    pub async fn list(&self, with_archived: bool) -> Result<Vec<CalibrationStatus>, ServiceError> {
-        let mut in_hand = self.dispatcher.statuses().await?;
-        let rows = self.store.reader().calibrations().await?;
-        let mut status = |(id, row): &(i64, Result<CalibrationRow, StoreError>)| {
+    /// Returns the states of calibrations, oldest first; those of archived studies on request.
+    pub async fn list(
+        &self,
+        with_archived: bool,
+        page: IdPage,
+    ) -> Result<Vec<CalibrationStatus>, ServiceError> {
+        let reader = self.store.reader();
+        let hidden: BTreeSet<i64> = match with_archived {
+            true => BTreeSet::new(),
+            false => reader
+                .archived()
+                .await?
+                .into_iter()
+                .map(|(study, _)| study)
+                .collect(),
+        };
+        let mut listed = Vec::new();
+        let mut rest = page;
+        // Those of archived studies are in the way of a full page.
+        while rest.limit > 0 {
+            let rows = reader.calibrations(rest).await?;
+            let shown = self.statuses(&rows).await?.into_iter();
+            listed.extend(shown.filter(|status| !hidden.contains(&status.study)));
+            let Some(&(last, _)) = rows.last().filter(|_| rows.len() as i64 == rest.limit) else {
+                break;
+            };
+            rest = IdPage {
+                after: last,
+                limit: page.limit - listed.len() as i64,
+            };
+        }
+        Ok(listed)
+    }
+
+    /// Returns the states of stored calibrations, which are in the order of their ids.
+    pub(super) async fn statuses(
+        &self,
+        rows: &[ListedCalibration],
+    ) -> Result<Vec<CalibrationStatus>, ServiceError> {
+        let (Some((first, _)), Some((last, _))) = (rows.first(), rows.last()) else {
+            return Ok(Vec::new());
+        };
+        let mut in_hand = self.dispatcher.statuses(*first..=*last).await?;
+        let status = |(id, row): &ListedCalibration| {
             let in_hand = in_hand.remove(id);
             in_hand.unwrap_or_else(|| self.stored_status(*id, row))
         };
-        let mut statuses: Vec<CalibrationStatus> = rows.iter().map(&mut status).collect();
-        if !with_archived {
-            stored_calibration::leave_out_archived(&self.store.reader(), &mut statuses).await?;
-        }
-        Ok(statuses)
+        Ok(rows.iter().map(status).collect())
     }
 
     /// Executes a user's command, and answers when its effect is stored.
     pub async fn control(&self, id: i64, control: Control) -> Result<CalibrationState, ServiceError> {
-        match self.dispatcher.control(id, control).await? {
+        match self.dispatcher.control(id, control.clone()).await? {
             Ok((state, fact)) => {
                 self.store.writer().durable(fact).await?;
                 Ok(state)
@@ -179,7 +214,7 @@ impl Service {
                 let verb = match control {
                     Control::Cancel => "cancelled",
                     Control::Pause => "paused",
-                    Control::Resume { .. } => "resumed",
+                    Control::Resume { .. } | Control::ComputeWith(_) => "resumed",
                 };
                 Err(ControlError::WrongState { id, state, verb }.into())
             }

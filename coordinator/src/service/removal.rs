@@ -74,7 +74,9 @@ impl Service {
         let calibrations = stored
             .ok_or_else(|| ServiceError::not_found("study", study))?
             .calibrations;
-        let in_hand = self.dispatcher().statuses().await?;
+        let (first, last) = (calibrations.iter().min(), calibrations.iter().max());
+        let ids = first.copied().unwrap_or_default()..=last.copied().unwrap_or_default();
+        let in_hand = self.dispatcher().statuses(ids).await?;
         match calibrations.iter().find_map(|id| in_hand.get(id)) {
             None => Ok(calibrations),
             Some(status) => Err(ServiceError::InProgress {

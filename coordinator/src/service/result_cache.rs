@@ -1,6 +1,7 @@
 //! The cache of texts about studies.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use report::StudyFile;
@@ -49,11 +50,15 @@ impl ResultCache {
         Ok(kept.and_then(|kept| kept.files.get(name)).cloned())
     }
 
-    /// Returns the text with one name of every study that has it, with its stamp.
-    pub(super) async fn texts(&self, name: &str) -> Result<BTreeMap<i64, (String, String)>, StoreError> {
-        let mut found = self.store.reader().results(name).await?;
+    /// Returns the text with one name of every study in a range that has it, with its stamp.
+    pub(super) async fn texts(
+        &self,
+        name: &str,
+        studies: &RangeInclusive<i64>,
+    ) -> Result<BTreeMap<i64, (String, String)>, StoreError> {
+        let mut found = self.store.reader().results(name, studies).await?;
         let in_memory = self.in_memory();
-        let kept = in_memory.iter().filter_map(|(study, kept)| {
+        let kept = in_memory.range(studies.clone()).filter_map(|(study, kept)| {
             let text = kept.files.get(name)?.clone();
             Some((*study, (kept.stamp.to_string(), text)))
         });
@@ -127,7 +132,7 @@ mod tests {
         assert_eq!(overview, format!("text of 1 by {now}"));
         assert_eq!(text(StudyFile::Overview, &then).await, None);
         assert_eq!(text(StudyFile::Report, &now).await, None);
-        let listed = async || cache.texts(&StudyFile::ListItem.name()).await.unwrap();
+        let listed = async || cache.texts(&StudyFile::ListItem.name(), &(1..=9)).await.unwrap();
         assert_eq!(listed().await[&2].0, now.to_string());
         cache.forget_deleted(|study| study == 1);
         assert_eq!(listed().await.into_keys().collect::<Vec<_>>(), [1]);

@@ -103,13 +103,3 @@ pub(super) fn stored_status(id: i64, row: &Result<CalibrationRow, StoreError>) -
         progress: None,
     }
 }
-
-/// Removes the calibrations of archived studies.
-pub(super) async fn leave_out_archived(
-    reader: &Reader,
-    statuses: &mut Vec<CalibrationStatus>,
-) -> Result<(), ServiceError> {
-    let archived = reader.archived().await?;
-    statuses.retain(|status| !archived.iter().any(|&(study, _)| study == status.study));
-    Ok(())
-}

@@ -1,6 +1,7 @@
 //! Overviews of studies for the page, and the list of all studies.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::RangeInclusive;
 
 use shared::api::{CalibrationState, CalibrationStatus};
 
@@ -11,7 +12,7 @@ use super::study_members::study_members;
 use job::model_kind;
 use record::CalibrationRow;
 use report::{StudyFile, StudyListItem, StudyOverview};
-use store::{Stamp, StoreError, is_of_members};
+use store::{IdPage, Stamp, StoreError, is_of_members};
 
 impl Service {
     /// Returns the overview of a study.
@@ -32,7 +33,7 @@ impl Service {
             .iter()
             .find(|m| m.member.state != CalibrationState::Finished);
         overview.state = unfinished.map_or(overview.state, |member| member.member.state);
-        if let Some(details) = reader.study_details().await?.remove(&id) {
+        if let Some(details) = reader.study_details(&(id..=id)).await?.remove(&id) {
             overview.describe(details);
         }
         overview.archived = reader.archived().await?.iter().any(|&(study, _)| study == id);
@@ -80,20 +81,50 @@ impl Service {
         Ok(overview)
     }
 
-    /// Lists every study, oldest first; archived ones on request. Errors and verdict of a study that has just changed are left out until
-    /// they are computed.
-    pub async fn studies(&self, with_archived: bool) -> Result<Vec<StudyListItem>, ServiceError> {
+    /// Lists studies, oldest first; archived ones on request. Errors and verdict of a study that has just changed are left out until they
+    /// are computed.
+    pub async fn studies(
+        &self,
+        with_archived: bool,
+        page: IdPage,
+    ) -> Result<Vec<StudyListItem>, ServiceError> {
+        let mut items = Vec::new();
+        let mut rest = page;
+        // Archived studies are in the way of a full page.
+        while rest.limit > 0 {
+            let ids = self.store().reader().study_ids(rest).await?;
+            let (Some(&first), Some(&last)) = (ids.first(), ids.last()) else {
+                break;
+            };
+            items.extend(self.studies_in(first..=last, with_archived).await?);
+            if (ids.len() as i64) < rest.limit {
+                break;
+            }
+            rest = IdPage {
+                after: last,
+                limit: page.limit - items.len() as i64,
+            };
+        }
+        Ok(items)
+    }
+
+    async fn studies_in(
+        &self,
+        ids: RangeInclusive<i64>,
+        with_archived: bool,
+    ) -> Result<Vec<StudyListItem>, ServiceError> {
         let reader = self.store().reader();
-        let archived = reader.archived().await?;
+        let archived: BTreeSet<i64> = reader.archived().await?.into_iter().map(|(id, _)| id).collect();
         let withdrawn = reader.withdrawn().await?;
-        let mut details = reader.study_details().await?;
+        let mut details = reader.study_details(&ids).await?;
         let mut studies: BTreeMap<i64, Vec<CalibrationStatus>> = BTreeMap::new();
         // A calibration whose row cannot be read belongs to no known study.
         let is_member = |s: &CalibrationStatus| s.study != 0 && !withdrawn.contains(&s.id);
-        for status in self.list(true).await?.into_iter().filter(is_member) {
+        let rows = reader.calibrations_of(&ids).await?;
+        for status in self.statuses(&rows).await?.into_iter().filter(is_member) {
             studies.entry(status.study).or_default().push(status);
         }
-        let mut listed = self.results.texts(&StudyFile::ListItem.name()).await?;
+        let mut listed = self.results.texts(&StudyFile::ListItem.name(), &ids).await?;
         let item = |(id, members): (i64, Vec<CalibrationStatus>)| {
             let stamp = members_stamp(members.iter().map(|member| (member.id, member.state)));
             let lead = members.first()?;
@@ -110,7 +141,7 @@ impl Service {
             item.name.clone_from(&lead.name);
             item.calibrations = members.iter().map(|member| member.id).collect();
             item.state = unfinished.map_or(item.state, |member| member.state);
-            item.archived = archived.iter().any(|&(study, _)| study == id);
+            item.archived = archived.contains(&id);
             if let Some(details) = details.remove(&id) {
                 item.describe(details);
             }
@@ -149,7 +180,8 @@ impl Service {
 
     /// Returns the studies whose present members have no overview yet, each with the part of the stamp that the members determine.
     async fn studies_without_overview(&self) -> Result<BTreeMap<i64, String>, ServiceError> {
-        let listed = self.results.texts(&StudyFile::ListItem.name()).await?;
+        let all = i64::MIN..=i64::MAX;
+        let listed = self.results.texts(&StudyFile::ListItem.name(), &all).await?;
         // Results of a study that is deleted in parts are not stored.
         let deleted = self.store().reader().half_deleted().await?;
         let mut studies: BTreeMap<i64, Vec<(i64, CalibrationState)>> = BTreeMap::new();

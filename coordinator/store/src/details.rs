@@ -1,6 +1,7 @@
 //! What people say of studies, and which calibrations they took out of them.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::RangeInclusive;
 
 use record::{CalibrationRow, StudyDetails};
 
@@ -41,11 +42,16 @@ pub(super) async fn withdraw(
 
 impl Reader {
     /// Reads what people say of studies, by study. A store of before migration 24 has nothing.
-    pub async fn study_details(&self) -> Result<BTreeMap<i64, StudyDetails>, StoreError> {
+    pub async fn study_details(
+        &self,
+        studies: &RangeInclusive<i64>,
+    ) -> Result<BTreeMap<i64, StudyDetails>, StoreError> {
         if !self.has_column("studies", "details").await? {
             return Ok(BTreeMap::new());
         }
-        let rows = query_as("SELECT id, details FROM studies WHERE details IS NOT NULL");
+        let rows =
+            query_as("SELECT id, details FROM studies WHERE details IS NOT NULL AND id >= ? AND id <= ?");
+        let rows = rows.bind(*studies.start()).bind(*studies.end());
         let rows: Vec<(i64, String)> = rows.fetch_all(&self.pool).await?;
         let read = |(study, text): (i64, String)| {
             let corrupt = |e| StoreError::Corrupt(format!("details of study {study}: {e}"));
@@ -85,14 +91,22 @@ mod tests {
         let (_folder, store, calibration) = fixture::store().await;
         let (reader, writer) = (store.reader(), store.writer());
         let study = reader.calibration(calibration).await.unwrap().unwrap().study;
-        assert!(reader.study_details().await.unwrap().is_empty());
+        assert!(reader.study_details(&(study..=study)).await.unwrap().is_empty());
         let details = StudyDetails {
             author: Some("Zoë".into()),
             tags: vec!["dry".into()],
             ..StudyDetails::default()
         };
         writer.describe_study(study, details.clone()).await.unwrap();
-        assert_eq!(reader.study_details().await.unwrap()[&study], details);
+        let described = reader.study_details(&(study..=study)).await.unwrap();
+        assert_eq!(described[&study], details);
+        assert!(
+            reader
+                .study_details(&(study + 1..=i64::MAX))
+                .await
+                .unwrap()
+                .is_empty()
+        );
         let stamped = async || reader.stamped_study(study, "b").await.unwrap();
         let whole = stamped().await;
         writer.withdraw(vec![calibration], Some(1)).await.unwrap();

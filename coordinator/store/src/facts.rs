@@ -122,6 +122,9 @@ pub(super) async fn write(
                 .await
                 .map(drop)
         }
+        Fact::Repinned { calibration, version } => {
+            verification::repin(connection, calibration, &version).await
+        }
         Fact::Fault {
             calibration,
             evaluation,

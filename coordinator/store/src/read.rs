@@ -24,7 +24,7 @@ use record::{
     PREDICTIONS_FROM, Prediction, RejectionReason, Role, StageRow,
 };
 
-const CALIBRATION: &str = "SELECT c.*, coalesce(c.experiment, s.experiment) AS on_experiment
+pub(super) const CALIBRATION: &str = "SELECT c.*, coalesce(c.experiment, s.experiment) AS on_experiment
      FROM calibrations c JOIN studies s ON s.id = c.study";
 
 /// A study with its members.
@@ -94,25 +94,6 @@ impl Reader {
         .transpose()
     }
 
-    /// Reads every experiment, oldest first, with the studies that have a calibration on it.
-    pub async fn experiments(&self) -> Result<Vec<(i64, Vec<i64>)>, StoreError> {
-        let rows: Vec<(i64, Option<i64>)> = query_as(
-            "SELECT e.id, m.study FROM experiments e LEFT JOIN
-             (SELECT DISTINCT coalesce(c.experiment, s.experiment) AS experiment, c.study
-              FROM calibrations c JOIN studies s ON s.id = c.study) m ON m.experiment = e.id ORDER BY e.id, m.study",
-        )
-        .fetch_all(&self.pool)
-        .await?;
-        let mut experiments: Vec<(i64, Vec<i64>)> = Vec::new();
-        for (experiment, study) in rows {
-            match experiments.last_mut() {
-                Some((last, studies)) if *last == experiment => studies.extend(study),
-                _ => experiments.push((experiment, study.into_iter().collect())),
-            }
-        }
-        Ok(experiments)
-    }
-
     /// Reads a calibration.
     pub async fn calibration(&self, id: i64) -> Result<Option<CalibrationRow>, StoreError> {
         let sql = format!("{CALIBRATION} WHERE c.id = ?");
@@ -121,17 +102,6 @@ impl Reader {
             .fetch_optional(&self.pool)
             .await?;
         row.as_ref().map(|row| self.calibration_row(row)).transpose()
-    }
-
-    /// Reads every calibration by its id, oldest first. A row that cannot be read is replaced by its error.
-    ///
-    /// # Errors
-    /// [`StoreError`] where no row can be read.
-    pub async fn calibrations(&self) -> Result<Vec<(i64, Result<CalibrationRow, StoreError>)>, StoreError> {
-        let sql = format!("{CALIBRATION} ORDER BY c.id");
-        let rows = query(sqlx::AssertSqlSafe(sql)).fetch_all(&self.pool).await?;
-        let row = |row: &Row| Ok((row.try_get("id")?, self.calibration_row(row)));
-        rows.iter().map(row).collect()
     }
 
     /// Reads the calibrations of a study, oldest first.
@@ -476,7 +446,7 @@ fn array<T: serde::de::DeserializeOwned>(json: &str) -> Result<Vec<T>, StoreErro
 
 impl Reader {
     /// Makes a calibration from its row. An error names the id of the row.
-    fn calibration_row(&self, row: &Row) -> Result<CalibrationRow, StoreError> {
+    pub(super) fn calibration_row(&self, row: &Row) -> Result<CalibrationRow, StoreError> {
         let id: i64 = row.try_get("id")?;
         let columns = || {
             let earlier = || self.earlier_members.as_ref()?.get(&id).cloned();

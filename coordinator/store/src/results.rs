@@ -1,6 +1,7 @@
 //! The stored results of studies: texts that were computed from a state of the study.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 
 use super::error::StoreError;
 use super::reader::Reader;
@@ -61,12 +62,18 @@ impl Reader {
         Ok(body)
     }
 
-    /// Reads the file with one name of every study that has it, with its stamp.
-    pub async fn results(&self, name: &str) -> Result<BTreeMap<i64, (String, String)>, StoreError> {
+    /// Reads the file with one name of every study in a range that has it, with its stamp.
+    pub async fn results(
+        &self,
+        name: &str,
+        studies: &RangeInclusive<i64>,
+    ) -> Result<BTreeMap<i64, (String, String)>, StoreError> {
         if !self.has_table("results").await? {
             return Ok(BTreeMap::new());
         }
-        let rows = query_as("SELECT study, stamp, body FROM results WHERE name = ?").bind(name);
+        let rows =
+            query_as("SELECT study, stamp, body FROM results WHERE name = ? AND study >= ? AND study <= ?");
+        let rows = rows.bind(name).bind(*studies.start()).bind(*studies.end());
         let rows: Vec<(i64, String, String)> = rows.fetch_all(&self.pool).await?;
         let by_study = rows
             .into_iter()
@@ -125,7 +132,10 @@ mod tests {
         keep(&old, &["report.html"]).await;
         assert!(read("report.html", &new).await && read("figures-1.json", &new).await);
         assert!(!read("report.html", &old).await);
-        let reports = reader.results("report.html").await.unwrap();
+        let reports = reader
+            .results("report.html", &(i64::MIN..=i64::MAX))
+            .await
+            .unwrap();
         assert_eq!(reports[&study].0, new.to_string());
         store.close().await;
     }

@@ -130,6 +130,34 @@ pub(super) async fn rewind(
         .bind(round_end)
         .execute(&mut *connection)
         .await?;
+    begin_anew(connection, calibration, round_end).await
+}
+
+/// Drops all results of a calibration, and pins it to another version of the equations.
+pub(super) async fn repin(
+    connection: &mut Connection,
+    calibration: i64,
+    version: &str,
+) -> Result<(), sqlx::Error> {
+    tracing::warn!(target: "journal", calibration, version, "its operator has chosen the version of the equations");
+    for table in ["evaluations", "disputes"] {
+        let sql = format!("DELETE FROM {table} WHERE calibration = ?");
+        query(sqlx::AssertSqlSafe(sql))
+            .bind(calibration)
+            .execute(&mut *connection)
+            .await?;
+    }
+    begin_anew(connection, calibration, 0).await?;
+    query("UPDATE calibrations SET model_version = ? WHERE id = ?")
+        .bind(version)
+        .bind(calibration)
+        .execute(connection)
+        .await
+        .map(drop)
+}
+
+/// Drops what follows from results of a calibration that are dropped. Evaluations from a number on get new attempts.
+async fn begin_anew(connection: &mut Connection, calibration: i64, from: i64) -> Result<(), sqlx::Error> {
     // After the rewind, these numbers stand for other parameter vectors, which get new attempts.
     query(
         "INSERT INTO faults (calibration, evaluation, attempt, worker, message, at_ms)
@@ -137,7 +165,7 @@ pub(super) async fn rewind(
          FROM faults WHERE calibration = ? AND evaluation >= ?",
     )
     .bind(calibration)
-    .bind(round_end)
+    .bind(from)
     .execute(&mut *connection)
     .await?;
     // The replay writes those rows again that still hold.
@@ -298,6 +326,31 @@ mod tests {
         let (rows, confirmed) = convicted("lab/").await;
         let expected = [(1, by("honest")), (2, None), (3, None), (5, None)];
         assert_eq!((rows.as_slice(), confirmed), (expected.as_slice(), 0));
+        store.close().await;
+    }
+
+    #[tokio::test]
+    async fn a_version_that_the_operator_chooses_drops_every_row_and_stays() {
+        let (_folder, store, calibration) = fixture::store().await;
+        let mut sink = store.writer().sink();
+        let row = |evaluation| Fact::Evaluated {
+            calibration,
+            row: fixture::row(evaluation, "liar", 7),
+        };
+        let (invented, chosen) = ("invented-1".to_owned(), "scm-7".to_owned());
+        let pinned = Fact::ModelVersion {
+            calibration,
+            version: invented,
+        };
+        let repinned = Fact::Repinned {
+            calibration,
+            version: chosen.clone(),
+        };
+        let number = sink(vec![pinned, row(0), row(1), repinned]).unwrap();
+        store.writer().durable(number).await.unwrap();
+        let stored = store.reader().stored(calibration, false).await.unwrap();
+        assert!(stored.evaluations.is_empty());
+        assert_eq!(stored.model_version, Some(chosen));
         store.close().await;
     }
 

@@ -145,3 +145,18 @@ def run(arguments: list[str], local_workers: int | None, tell: OnProgress | None
 
     workers = [] if local_workers is None else ["--local-workers", str(local_workers)]
     return _program.call([*arguments, *workers], on_line=on_line)
+
+
+#: The number of entries of a list that are asked for at a time.
+PAGE = 1000
+
+
+def listed(place: Place, path: str, **query: Query) -> list[dict[str, Any]]:
+    """A list whose entries have numbers, asked for page by page, so that the service never makes the whole of a long one."""
+    entries: list[dict[str, Any]] = []
+    while True:
+        after = entries[-1]["id"] if entries else None
+        page = place.get(path, limit=PAGE, after=after, **query)
+        entries += page
+        if len(page) < PAGE:
+            return entries

@@ -8,7 +8,7 @@ from typing import Any
 
 from . import _program
 from ._error import ProgramError
-from ._place import ServicePlace
+from ._place import ServicePlace, listed
 from ._study import Study, client
 from ._table import Table
 
@@ -65,14 +65,13 @@ class Service:
         Args:
             archived: lists those that are archived, too.
         """
-        listed = self._place.get("studies", archived=archived)
         rows = [
             {
                 **{key: study[key] for key in ("id", "name", "state", "model_kind")},
                 "effects": "+".join(study["effects"]) or "base",
                 "verdict": (study["verdict"] or {}).get("text"),
             }
-            for study in listed
+            for study in listed(self._place, "studies", archived=archived)
         ]
         return Table.from_rows(rows, ("id", "name", "state", "model_kind", "effects", "verdict"))
 

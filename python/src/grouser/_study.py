@@ -11,7 +11,7 @@ from typing import Any
 from ._calibration import Calibration
 from ._client import Client
 from ._error import CalibrationStopped, GrouserError
-from ._place import FolderPlace, Place, ServicePlace
+from ._place import FolderPlace, Place, ServicePlace, listed
 from ._planned import Plan, request, table
 from ._progress import OnProgress, Progress, of_status, shown
 from ._story import EffectFile, MissingEffect, NextRun, Step, Story, next_run, story
@@ -63,7 +63,7 @@ class Study:
         """
         place = _place(source, token, ca_certificate, local_workers)
         if id is None:
-            studies = [study["id"] for study in place.get("studies")]
+            studies = [study["id"] for study in listed(place, "studies")]
             if len(studies) != 1:
                 raise GrouserError(f"{place}: there are {len(studies)} studies: name one by its id, of {studies}")
             id = studies[0]

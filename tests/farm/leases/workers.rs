@@ -2,6 +2,7 @@
 
 use farm_tests::fake_worker::{FakeWorker, PROTOCOL, evaluated};
 use farm_tests::job::{FIT_RUNS, Job};
+use farm_tests::programs::{coordinator, run};
 use farm_tests::service::Service;
 use farm_tests::wait::until_true;
 use serde_json::json;
@@ -77,4 +78,41 @@ fn a_waiting_worker_is_served_when_work_arrives() {
         poll.join().expect("the poll ends")
     });
     assert_eq!(leases, Some(4));
+}
+
+#[test]
+fn the_operator_says_which_version_computes_on_where_an_invented_one_was_first() {
+    let service = Service::start(&[]);
+    let id = service.submit(&Job::small());
+    let invented = FakeWorker::new(&service.client, "liar").computing("no-such-version");
+    let outcome = |lease: &_| evaluated(lease, FIT_RUNS);
+    invented.answer(&invented.take(3), outcome);
+    let honest = FakeWorker::new(&service.client, "honest");
+    assert!(
+        honest.take(3).is_empty(),
+        "the first result has pinned the invented version"
+    );
+    let resume = |query: &str| {
+        service
+            .client
+            .post(&format!("/v1/calibrations/{id}/resume{query}"), &json!({}))
+    };
+    assert_eq!(resume("?version=").status, 400);
+    assert_eq!(resume("?version=fake-1&skip_faults=true").status, 400);
+    let resumed = run(coordinator([
+        "resume",
+        &id.to_string(),
+        "--version",
+        "fake-1",
+        "--url",
+        &service.url(),
+    ]));
+    assert_eq!(resumed.success(), format!("calibration {id} is running\n"));
+    until_true("leases for the chosen version", || !honest.take(3).is_empty());
+    assert!(invented.take(3).is_empty());
+    let status = service.status(id);
+    assert_eq!(
+        (&status["model_version"], &status["progress"]["evaluations"]),
+        (&json!("fake-1"), &json!(0))
+    );
 }

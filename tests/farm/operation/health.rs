@@ -6,36 +6,25 @@ use farm_tests::service::Service;
 use farm_tests::wait::until_true;
 
 #[test]
-fn health_is_answered_in_the_middle_of_a_long_step_of_the_farm() {
+fn the_last_results_of_a_round_are_answered_before_the_next_one_is_computed() {
     let service = Service::start(&[]);
-    service.submit(&Job::small().sampler(20_000, [2, 4], 1));
+    let id = service.submit(&Job::small().sampler(20_000, [2, 4], 1));
     let worker = FakeWorker::new(&service.client, "worker");
-    let step_s = || {
-        let health = service.client.json("/health");
-        assert_eq!(health["status"], "ok");
-        health["farm_step_s"].as_f64().unwrap_or_default()
-    };
     let outcome = |lease: &_| evaluated(lease, FIT_RUNS);
     // A worker that has answered nothing gets few leases.
     worker.answer(&worker.take(1), outcome);
     worker.answer(&worker.take(9_999), outcome);
     let last = worker.take(10_000);
     assert_eq!(last.len(), 10_000);
-    // The exchange is answered after the sampler has proposed the next round.
-    std::thread::scope(|scope| {
-        let exchange = scope.spawn(|| worker.answer(&last, outcome));
-        until_true("an answer in the middle of a step", || {
-            let is_over = exchange.is_finished();
-            let step_s = step_s();
-            let is_in_the_middle = step_s > 0.2 && !exchange.is_finished();
-            assert!(
-                is_in_the_middle || !is_over,
-                "the step is over, and nobody was told"
-            );
-            is_in_the_middle
-        });
+    // An answer behind the step would know of the evaluations of the next round.
+    let answer = worker.answer(&last, outcome);
+    assert_eq!(answer["remaining"], 0);
+    let path = format!("/v1/calibrations/{id}");
+    assert_eq!(service.client.json(&path)["progress"]["evaluations"], 20_000);
+    assert_eq!(service.client.json("/health")["status"], "ok");
+    until_true("the next round", || {
+        service.client.json("/v1/work/demand")["queued"].as_u64() > Some(0)
     });
-    until_true("rest", || step_s() < 0.1);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 mod doctor;
 mod figures;
 mod health;
+mod lists;
 mod shell;
 mod tls;
 mod webhook;

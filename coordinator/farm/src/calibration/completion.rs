@@ -1,12 +1,10 @@
 //! The completion of evaluations: it checks and scores a result, and determines the facts to store and the next step.
 
-use inference::TellProgress;
 use shared::api::CalibrationState;
 use shared::outcome::Observables;
 use statistics::{LikelihoodError, LogLikelihood};
 
 use super::Calibration;
-use super::engine::CalibrationResult;
 use super::final_draws::FinalDraws;
 use super::phase::Phase;
 use super::second_answer::{Answer, SecondAnswers};
@@ -19,7 +17,8 @@ use record::{EvaluationKey, EvaluationRow, Fact, Kept, RejectionReason};
 impl Calibration {
     /// Takes the result of an evaluation; a late duplicate is compared with the stored result and changes nothing else.
     ///
-    /// Returns the facts to store, in order, and whether the result counted.
+    /// Returns the facts to store, in order, and whether the result counted. After the last result of a round, a step is due
+    /// ([`Calibration::step`], [`Calibration::take_step`]).
     ///
     /// # Errors
     /// [`ResultError`] for a result that does not fit its variant. The calibration is unchanged; the caller fails the lease.
@@ -165,7 +164,7 @@ impl Calibration {
         self.spec.algorithm.is_told_values() || (samples && self.engine.round() == 0)
     }
 
-    /// Updates counts, engine and phase after a completed evaluation.
+    /// Updates counts, engine and phase after a completed evaluation. After the last one of a round, the step of the engine is due.
     pub(super) fn advance(&mut self, row: &EvaluationRow, facts: &mut Vec<Fact>) {
         self.count(row);
         if !self.phase.is_sampling() {
@@ -178,7 +177,6 @@ impl Calibration {
         let EvaluationKey::Sampling { particle, .. } = self.key(row.evaluation) else {
             return;
         };
-        let stages = self.engine.stages().len();
         let selected = match &row.kept {
             Kept::Whole(observables) => {
                 self.drawn.insert(row.evaluation, row.clone());
@@ -186,23 +184,14 @@ impl Calibration {
             }
             Kept::Scored | Kept::Fitted(_) | Kept::Rejected(_) => None,
         };
-        let values = selected.as_deref().or(row.kept.fitted());
-        let progress = self.engine.tell(particle, row, values);
-        for record in &self.engine.stages()[stages..] {
-            facts.push(Fact::Stage {
-                calibration: self.identity.id,
-                record: Box::new(record.clone()),
-                busy_ms: self.cost.busy_ms,
-            });
+        if self.witness.answered() == self.queue.len() {
+            let values = selected.or_else(|| row.kept.fitted().map(<[f64]>::to_vec));
+            self.end_round(particle, row, values);
+            return;
         }
-        match progress {
-            Ok(TellProgress::Waiting) => {}
-            Ok(TellProgress::NextRound | TellProgress::StageFinished) => self.ask(),
-            Ok(TellProgress::Finished) => self.end_sampling(facts),
-            Ok(TellProgress::Failed(failure)) => {
-                self.finish(CalibrationState::Failed, Some(failure.to_string()), facts);
-            }
-            Err(error) => self.finish(CalibrationState::Failed, Some(error.to_string()), facts),
+        let values = selected.as_deref().or(row.kept.fitted());
+        if let Err(error) = self.engine.tell(particle, row, values) {
+            self.finish(CalibrationState::Failed, Some(error.to_string()), facts);
         }
     }
 
@@ -214,51 +203,20 @@ impl Calibration {
         self.cost.rejected += u64::from(is_counted && row.kept.is_rejected());
     }
 
-    /// Stores the result of the engine, and asks for the final draws; a search has none.
-    fn end_sampling(&mut self, facts: &mut Vec<Fact>) {
-        let calibration = self.identity.id;
-        let mut taken_over = Vec::new();
-        let (draws, fact) = match self.engine.finding() {
-            Some(CalibrationResult::Posterior(posterior)) => {
-                let mut draws = FinalDraws::from_posterior(posterior);
-                taken_over = draws.take_over(&self.drawn, self.spec.algorithm.width());
-                let posterior = Box::new(posterior.clone());
-                (
-                    Some(draws),
-                    Fact::Posterior {
-                        calibration,
-                        posterior,
-                        emulator: self.engine.emulator().cloned().map(Box::new),
-                    },
-                )
-            }
-            Some(CalibrationResult::Estimate(estimate)) => {
-                let draws = FinalDraws::from_estimate(estimate, self.variants.has_histories());
-                let estimate = Box::new(estimate.clone());
-                (
-                    Some(draws),
-                    Fact::Estimate {
-                        calibration,
-                        estimate,
-                    },
-                )
-            }
-            Some(CalibrationResult::Discovery(record)) => (None, Fact::Discovery { calibration, record }),
-            None => return,
+    /// Asks for the final draws of an engine that has ended; a search has none.
+    pub(super) fn end_sampling(&mut self, draws: Option<FinalDraws>, facts: &mut Vec<Fact>) {
+        let Some(mut draws) = draws else {
+            return self.end_phase(facts);
         };
-        facts.push(fact);
+        let calibration = self.identity.id;
+        let taken_over = draws.take_over(&self.drawn, self.spec.algorithm.width());
         facts.extend(
             taken_over
                 .into_iter()
                 .map(|row| Fact::Evaluated { calibration, row }),
         );
-        match draws {
-            Some(draws) => {
-                self.phase = Phase::FinalDraws(draws);
-                self.ask();
-            }
-            None => self.end_phase(facts),
-        }
+        self.phase = Phase::FinalDraws(draws);
+        self.ask();
     }
 
     /// Notes that the model rejects the holdout runs of a draw together, so that they are simulated one by one. This would not help with a
@@ -290,7 +248,7 @@ impl Calibration {
         }
     }
 
-    fn finish(&mut self, state: CalibrationState, message: Option<String>, facts: &mut Vec<Fact>) {
+    pub(super) fn finish(&mut self, state: CalibrationState, message: Option<String>, facts: &mut Vec<Fact>) {
         self.queue = LeaseQueue::default();
         self.witness.second = SecondAnswers::default();
         self.change_state(state, message, facts);

@@ -4,10 +4,13 @@ use inference::evolution::Evolution;
 use inference::lm::LmFit;
 use inference::point_estimate::ModeEstimate;
 use inference::{
-    EmulatedSampler, EmulatorRecord, PosteriorSample, Proposal, Sampler, StageRecord, TellError, TellProgress,
+    EmulatedSampler, EmulatorRecord, PosteriorSample, Proposal, Sampler, StageProgress, StageRecord,
+    TellError, TellProgress,
 };
+use shared::api::{Position, SearchProgress};
 use statistics::{LogLikelihood, NotANumber};
 
+use super::outline::EngineOutline;
 use job::{AlgorithmSettings, AlgorithmSettingsError, Spec};
 use record::{Discovery, EvaluationRow};
 use search::{DiscoveryError, RunningDiscovery, SearchModels};
@@ -25,6 +28,8 @@ pub enum CalibrationEngine {
     Evolution(Box<Evolution>),
     /// Searches for a missing effect; it is told predicted values.
     Discovery(Box<RunningDiscovery>),
+    /// The engine takes a step on another thread.
+    Stepping(Box<EngineOutline>),
 }
 
 /// The reason why a calibration cannot begin.
@@ -53,6 +58,9 @@ pub(super) enum EngineError {
     /// The log-likelihood of the result is not a number.
     #[error(transparent)]
     Score(#[from] NotANumber),
+    /// The engine takes a step.
+    #[error("a result came while the next round was being computed")]
+    Stepping,
 }
 
 /// Returns ln p(data | theta) of an evaluation. Where the model rejected the parameters, the data are impossible.
@@ -115,6 +123,7 @@ impl CalibrationEngine {
             CalibrationEngine::Fit(fit) => fit.round().number(),
             CalibrationEngine::Evolution(evolution) => evolution.round().number(),
             CalibrationEngine::Discovery(discovery) => discovery.round(),
+            CalibrationEngine::Stepping(outline) => outline.round,
         }
     }
 
@@ -126,6 +135,7 @@ impl CalibrationEngine {
             CalibrationEngine::Fit(fit) => fit.round().pending(),
             CalibrationEngine::Evolution(evolution) => evolution.round().pending(),
             CalibrationEngine::Discovery(discovery) => discovery.pending(),
+            CalibrationEngine::Stepping(_) => &[],
         }
     }
 
@@ -145,6 +155,7 @@ impl CalibrationEngine {
             CalibrationEngine::Fit(fit) => fit.tell(particle, values)?,
             CalibrationEngine::Evolution(evolution) => evolution.tell(particle, log_likelihood(row)?)?,
             CalibrationEngine::Discovery(discovery) => discovery.tell(particle, values)?,
+            CalibrationEngine::Stepping(_) => return Err(EngineError::Stepping),
         })
     }
 
@@ -155,7 +166,8 @@ impl CalibrationEngine {
             CalibrationEngine::Sampler(_)
             | CalibrationEngine::Fit(_)
             | CalibrationEngine::Evolution(_)
-            | CalibrationEngine::Discovery(_) => false,
+            | CalibrationEngine::Discovery(_)
+            | CalibrationEngine::Stepping(_) => false,
         }
     }
 
@@ -166,7 +178,8 @@ impl CalibrationEngine {
             CalibrationEngine::Sampler(_)
             | CalibrationEngine::Emulated(_)
             | CalibrationEngine::Fit(_)
-            | CalibrationEngine::Evolution(_) => None,
+            | CalibrationEngine::Evolution(_)
+            | CalibrationEngine::Stepping(_) => None,
         }
     }
 
@@ -177,7 +190,8 @@ impl CalibrationEngine {
             CalibrationEngine::Sampler(_)
             | CalibrationEngine::Fit(_)
             | CalibrationEngine::Evolution(_)
-            | CalibrationEngine::Discovery(_) => None,
+            | CalibrationEngine::Discovery(_)
+            | CalibrationEngine::Stepping(_) => None,
         }
     }
 
@@ -186,9 +200,10 @@ impl CalibrationEngine {
         match self {
             CalibrationEngine::Sampler(sampler) => sampler.stages(),
             CalibrationEngine::Emulated(sampler) => sampler.stages(),
-            CalibrationEngine::Fit(_) | CalibrationEngine::Evolution(_) | CalibrationEngine::Discovery(_) => {
-                &[]
-            }
+            CalibrationEngine::Fit(_)
+            | CalibrationEngine::Evolution(_)
+            | CalibrationEngine::Discovery(_)
+            | CalibrationEngine::Stepping(_) => &[],
         }
     }
 
@@ -203,6 +218,60 @@ impl CalibrationEngine {
                 let record = discovery.record();
                 record.map(|record| CalibrationResult::Discovery(Box::new(record)))
             }
+            CalibrationEngine::Stepping(_) => None,
         }
+    }
+
+    /// Returns what remains known of the engine during a step.
+    pub(super) fn outline(&self) -> EngineOutline {
+        EngineOutline {
+            round: self.round(),
+            position: self.position(),
+            exponents: self.exponents(),
+            search: self.search(),
+        }
+    }
+
+    /// Returns how far the algorithm is.
+    pub fn position(&self) -> Position {
+        match self {
+            CalibrationEngine::Sampler(sampler) => sampler_position(sampler.progress()),
+            CalibrationEngine::Emulated(sampler) => sampler_position(sampler.progress()),
+            CalibrationEngine::Fit(fit) => Position::Fit {
+                steps: fit.steps() as u32,
+            },
+            CalibrationEngine::Evolution(evolution) => Position::Evolution {
+                generations: evolution.history().len() as u32,
+            },
+            CalibrationEngine::Discovery(search) => Position::Search {
+                rounds: search.round() as u32,
+            },
+            CalibrationEngine::Stepping(outline) => outline.position.clone(),
+        }
+    }
+
+    /// Returns the tempering exponents of the finished stages.
+    pub fn exponents(&self) -> Vec<f64> {
+        match self {
+            CalibrationEngine::Stepping(outline) => outline.exponents.clone(),
+            engine => engine.stages().iter().map(|s| s.tempering_exponent).collect(),
+        }
+    }
+
+    /// Returns what a search is doing; `None` for other algorithms.
+    pub fn search(&self) -> Option<SearchProgress> {
+        match self {
+            CalibrationEngine::Stepping(outline) => outline.search.clone(),
+            engine => Some(engine.discovery()?.progress()),
+        }
+    }
+}
+
+fn sampler_position(now: StageProgress) -> Position {
+    Position::Sampler {
+        stage: now.stage as u32,
+        tempering_exponent: now.tempering_exponent,
+        step: now.step as u32,
+        acceptance: now.acceptance,
     }
 }

@@ -7,7 +7,8 @@
 //! - `mod`: [`Calibration`], and the evaluations that it asks for.
 //! - `completion`: the consequences of a result. [`replay`]: the same for stored results.
 //! - `phase`, `final_draws`: the progress of a calibration. `variants`: the model variants that it evaluates.
-//! - `engine`: sampler, fit, evolution or search.
+//! - `engine`: sampler, fit, evolution or search. `step`: what it computes between two rounds. `outline`: what is known of it
+//!   meanwhile. `stepping`: the calibration between two rounds.
 //! - `faults`: failed attempts at evaluations.
 //! - `witness`, `comparison`, `second_answer`, `verification`: whether answers of two workers agree.
 //! - `question`, `simulation_result`: the question of a lease, and its result.
@@ -17,11 +18,14 @@ mod completion;
 mod engine;
 mod faults;
 mod final_draws;
+mod outline;
 mod phase;
 mod question;
 pub mod replay;
 mod second_answer;
 mod simulation_result;
+mod step;
+mod stepping;
 mod variants;
 mod verification;
 mod witness;
@@ -35,6 +39,7 @@ use shared::file::FileSet;
 use shared::model::ModelVariant;
 
 use self::phase::Phase;
+use self::step::DueStep;
 use self::variants::Variants;
 use crate::lease::{LeaseQueue, SlowLease};
 use job::{AlgorithmSettings, Spec};
@@ -45,6 +50,7 @@ pub use engine::{BeginError, CalibrationEngine, CalibrationResult};
 pub use question::Question;
 pub use second_answer::{Answer, SecondAnswers, Undecided, Verdict};
 pub use simulation_result::{ResultError, SimulationResult};
+pub use step::{Step, Stepped};
 pub use verification::{Verification, VerificationRule};
 pub use witness::Witness;
 
@@ -98,6 +104,8 @@ pub struct Calibration {
     pub witness: Witness,
     engine: CalibrationEngine,
     phase: Phase,
+    /// The step between two rounds, if it is due or being taken. Meanwhile the engine is an outline.
+    due: Option<DueStep>,
     variants: Variants,
     /// The workers of failed leases by evaluation, kept over a restart.
     failed: BTreeMap<u64, Vec<String>>,
@@ -151,6 +159,7 @@ impl Calibration {
             cost: Cost::default(),
             witness: Witness::default(),
             phase: Phase::Sampling,
+            due: None,
             failed: BTreeMap::new(),
             drawn: BTreeMap::new(),
         };

@@ -101,6 +101,7 @@ impl Calibration {
         self.queue.complete(evaluation);
         self.answered_before(answer, evaluation, confirmed_by);
         self.advance(row, facts);
+        facts.extend(self.step());
         Ok(())
     }
 }
@@ -246,7 +247,8 @@ mod tests {
                     }];
                 }
                 let computed = computed(outcome);
-                let (new, counted) = calibration.complete(evaluation, computed, "toy").unwrap();
+                let (mut new, counted) = calibration.complete(evaluation, computed, "toy").unwrap();
+                new.extend(calibration.step());
                 facts.extend(new);
                 done += usize::from(counted);
                 if done == max {
@@ -513,6 +515,7 @@ mod tests {
                     false => computed(toy(question.theta, 1)),
                 };
                 facts.extend(calibration.complete(evaluation, computed, "toy").unwrap().0);
+                facts.extend(calibration.step());
             }
         }
         let drawn = |r: &&&EvaluationRow| r.evaluation >= PREDICTIONS_FROM;

@@ -1,5 +1,7 @@
 //! The list of calibrations: their states, and what the study of each has found.
 
+use std::collections::BTreeMap;
+
 use shared::api::{CalibrationState, CalibrationStatus};
 use shared::sentence::one_line;
 
@@ -14,8 +16,9 @@ const NAME: usize = 12;
 
 /// Tabulates calibrations, one line each. The first one of a study has the day, the error and the verdict of the study.
 pub fn list(statuses: &[CalibrationStatus], studies: &[StudyListItem]) -> String {
+    let by_id: BTreeMap<i64, &StudyListItem> = studies.iter().map(|item| (item.id, item)).collect();
     let study = |status: &CalibrationStatus| {
-        let item = studies.iter().find(|item| item.id == status.study)?;
+        let item = *by_id.get(&status.study)?;
         (item.calibrations.first() == Some(&status.id)).then_some(item)
     };
     let names = statuses

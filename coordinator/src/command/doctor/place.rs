@@ -10,7 +10,7 @@ use tokio::net::TcpListener;
 
 use super::finding::Finding;
 use super::service;
-use store::{Reader, StoreError, file_of, is_server, name_of};
+use store::{IdPage, Reader, StoreError, file_of, is_server, name_of};
 
 /// The time of one write to disk above which a disk is slow, because every acknowledged result waits for one.
 const SLOW: Duration = Duration::from_millis(100);
@@ -59,7 +59,7 @@ async fn read(store: &str) -> (Finding, bool) {
             return Ok(None);
         }
         let has_token = !reader.tokens().await?.is_empty();
-        Ok::<_, StoreError>(Some((reader.calibrations().await?, has_token)))
+        Ok::<_, StoreError>(Some((reader.calibrations(IdPage::ALL).await?, has_token)))
     };
     match read.await {
         Ok(None) => (

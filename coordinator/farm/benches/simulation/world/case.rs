@@ -197,9 +197,10 @@ impl Case {
                     let computed = SimulationResult::new(outcome.clone());
                     (computed.map_err(|e| e.to_string())?, "w")
                 };
-                let (facts, _) = calibration
+                let (mut facts, _) = calibration
                     .complete(evaluation, computed, worker)
                     .map_err(|e| e.to_string())?;
+                facts.extend(calibration.step());
                 for fact in facts {
                     match fact {
                         Fact::Evaluated { row, .. } => {

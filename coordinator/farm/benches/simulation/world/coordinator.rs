@@ -1,11 +1,11 @@
 //! The simulated coordinator: the real farm between a simulated network, a ledger and a witness.
 //!
 //! It does step by step what `farm::dispatch` and the store's writer do around the farm: it numbers facts in order, holds an answer back
-//! until its facts are on disk, and parks a worker that finds no work. Planted bugs act on the calls of the farm.
+//! until its facts are on disk, parks a worker that finds no work, and has the steps of engines taken, which come back in any order. Planted bugs act on the calls of the farm.
 
 use std::collections::VecDeque;
 
-use farm::calibration::VerificationRule;
+use farm::calibration::{Step, VerificationRule};
 use farm::{Control, Farm};
 use record::{Fact, SealKey};
 use shared::api::CalibrationState;
@@ -66,6 +66,8 @@ pub(crate) struct Coordinator<'a> {
     rule: VerificationRule,
     /// Calibrations to replay, each with the number of facts that must be on disk before.
     rewinds: Vec<(usize, i64)>,
+    /// The steps of engines that are being taken.
+    steps: Vec<Step>,
 }
 
 impl<'a> Coordinator<'a> {
@@ -80,6 +82,7 @@ impl<'a> Coordinator<'a> {
             plant,
             rule: VerificationRule::with_share(verified_share),
             rewinds: Vec::new(),
+            steps: Vec::new(),
         }
     }
 
@@ -137,7 +140,24 @@ impl<'a> Coordinator<'a> {
         let stored = self.ledger.len();
         let rewinds = self.farm.iter_mut().flat_map(Farm::take_rewinds);
         self.rewinds.extend(rewinds.map(|id| (stored, id)));
+        let steps = self.farm.iter_mut().flat_map(Farm::take_steps);
+        self.steps.extend(steps);
         Ok(())
+    }
+
+    /// Returns the number of steps that are being taken.
+    pub(crate) fn steps(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// Lets a step come back.
+    pub(crate) fn step(&mut self, place: usize, now_ms: u64) -> Result<(), Broken> {
+        let stepped = self.steps.swap_remove(place).run();
+        if let Some(farm) = &mut self.farm {
+            farm.stepped(stepped, now_ms);
+        }
+        self.take_facts(Source::Step)?;
+        self.serve_parked(now_ms)
     }
 
     /// Handles a request that arrives.
@@ -266,7 +286,7 @@ impl<'a> Coordinator<'a> {
         let done = if is_lost {
             Ok(CalibrationState::Paused)
         } else {
-            farm.control(id, control, now_ms)
+            farm.control(id, control.clone(), now_ms)
         };
         self.take_facts(Source::Command)?;
         let Ok(state) = done else { return Ok(()) };
@@ -287,6 +307,7 @@ impl<'a> Coordinator<'a> {
         self.held.clear();
         self.parked.clear();
         self.rewinds.clear();
+        self.steps.clear();
         let durable = self.ledger.durable();
         if self.has(Plant::HoleInFacts) && durable + 1 < self.ledger.len() {
             self.ledger.lose(durable);

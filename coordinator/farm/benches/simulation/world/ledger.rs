@@ -127,6 +127,10 @@ impl<'a> Table<'a> {
             // Built-in models are not evaluated twice by one worker.
             Fact::Repeated { .. } => {}
             Fact::ModelVersion { version, .. } => self.model_version = Some(version.clone()),
+            Fact::Repinned { version, .. } => {
+                self.rows.clear();
+                self.model_version = Some(version.clone());
+            }
             Fact::Fault {
                 evaluation,
                 attempt: 0,
@@ -225,6 +229,7 @@ pub(crate) fn calibration_of(fact: &Fact) -> i64 {
         | Fact::Discovery { calibration, .. }
         | Fact::State { calibration, .. }
         | Fact::ModelVersion { calibration, .. }
+        | Fact::Repinned { calibration, .. }
         | Fact::Repeated { calibration, .. }
         | Fact::Confirmed { calibration, .. }
         | Fact::Quarantined { calibration, .. }

@@ -25,6 +25,8 @@ const OTHER_EQUATIONS: &str = "scm-5";
 const MAX_CALM_STEPS: u64 = 40_000;
 /// The number of steps after the end, for messages that are still on their way.
 const STEPS_AFTER: u64 = 20;
+/// The probability that one of the steps of engines that are being taken comes back before the next event.
+const STEP_BACK: f64 = 0.2;
 /// The stage of the random streams, which no sampler uses.
 const STAGE: u64 = 1 << 41;
 /// The index of a sender that expects no answer.
@@ -179,6 +181,12 @@ impl Schedule<'_> {
 
     fn step(&mut self) -> Result<(), Broken> {
         self.now_ms += self.stream.below(40) as u64;
+        // Steps come back late and in any order.
+        let steps = self.coordinator.steps();
+        if steps > 0 && chance(&mut self.stream, STEP_BACK) {
+            let place = self.stream.below(steps);
+            self.coordinator.step(place, self.now_ms)?;
+        }
         match self.stream.below(100) {
             0..42 => self.act(),
             42..72 => {

@@ -30,6 +30,8 @@ pub(crate) enum Source<'b> {
     Command,
     /// A replay.
     Restart,
+    /// A step of an engine.
+    Step,
 }
 
 /// The checks of everything that reaches and leaves the farm.
@@ -152,7 +154,7 @@ impl<'a> Witness<'a> {
                     format!("{worker}, which is honest, is quarantined")
                 })
             }
-            Fact::Rewound { .. } => {
+            Fact::Rewound { .. } | Fact::Repinned { .. } => {
                 self.live.retain(|(calibration, ..), _| *calibration != id);
                 self.unstarted.retain(|(calibration, _), _| *calibration != id);
                 Ok(())
@@ -305,7 +307,7 @@ impl<'a> Witness<'a> {
                 Source::Tick => self.expired.iter().any(|(calibration, live)| {
                     *calibration == (id, evaluation, false) && live.worker == worker && live.started
                 }),
-                Source::Command | Source::Restart => false,
+                Source::Command | Source::Restart | Source::Step => false,
             };
         demand(is_its_own, Promise::Attempt, || {
             format!(

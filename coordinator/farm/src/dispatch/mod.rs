@@ -1,10 +1,12 @@
 //! The thread of the farm. It receives messages one by one, and sends answers and facts.
 //!
-//! The thread owns all state, so there is no lock, and long computations of a sampler never run on the async runtime. Requests that wait
-//! for work are parked here and served in the order of their arrival.
+//! The thread owns all state, so there is no lock. It never computes: the steps of engines are taken by the compute threads, which tell it
+//! what they have computed by messages like all others. Requests that wait for work are parked here and served in the order of their
+//! arrival.
 
 use std::collections::{BTreeMap, VecDeque};
-use std::sync::mpsc;
+use std::ops::RangeInclusive;
+use std::sync::{Arc, Weak, mpsc};
 use std::time::{Duration, Instant};
 
 use shared::api::{CalibrationState, CalibrationStatus, WorkDemand};
@@ -13,12 +15,13 @@ use shared::model::ModelVariant;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::sync::oneshot;
 
+use super::compute::{Compute, Computed, TakeStep, Tell};
 use super::control::{Control, ControlError};
 use super::farm::Farm;
 use super::metrics::FarmMetrics;
 use super::pulse::{Heart, Pulse};
 use super::worker_record::WorkerRecord;
-use crate::calibration::Calibration;
+use crate::calibration::{Calibration, Step};
 use record::SealKey;
 use record::fact::Fact;
 
@@ -60,6 +63,7 @@ enum Message {
         id: i64,
         reason: String,
     },
+    Computed(Computed),
     Look {
         look: Look,
     },
@@ -69,7 +73,7 @@ enum Message {
 /// A handle on the farm's thread; clones are cheap.
 #[derive(Debug, Clone)]
 pub struct Dispatcher {
-    sender: mpsc::Sender<Message>,
+    sender: Arc<mpsc::Sender<Message>>,
     pulse: Pulse,
 }
 
@@ -79,7 +83,7 @@ pub struct Dispatcher {
 pub struct Stopped;
 
 impl Dispatcher {
-    /// Starts the farm's thread.
+    /// Starts the farm's thread and the compute threads.
     ///
     /// Facts go to `sink`; when the store fails, the thread ends. The owner of the store receives the calibrations to replay from the
     /// returned channel, and returns each by [`Dispatcher::add`].
@@ -90,8 +94,15 @@ impl Dispatcher {
         farm: Farm,
         sink: impl FnMut(Vec<Fact>) -> Option<u64> + Send + 'static,
     ) -> std::io::Result<(Dispatcher, Rewinds)> {
-        let sink: FactSink = Box::new(sink);
+        Self::start_with(farm, Box::new(sink), &(Arc::new(Step::run) as TakeStep))
+    }
+
+    /// Starts the threads with a function that takes steps.
+    fn start_with(farm: Farm, sink: FactSink, take: &TakeStep) -> std::io::Result<(Dispatcher, Rewinds)> {
+        let compute = Compute::start(take)?;
         let (sender, receiver) = mpsc::channel();
+        let sender = Arc::new(sender);
+        let own = Arc::downgrade(&sender);
         let (rewinds, asked) = unbounded_channel();
         let heart = Heart::begin();
         let pulse = heart.pulse();
@@ -99,6 +110,8 @@ impl Dispatcher {
             Thread {
                 farm,
                 sink,
+                compute,
+                own,
                 rewinds,
                 parked: VecDeque::new(),
                 parked_until_ms: u64::MAX,
@@ -160,11 +173,15 @@ impl Dispatcher {
         self.look(move |farm, now| farm.status(id, now)).await
     }
 
-    /// Returns the status of every calibration in progress, by id.
-    pub async fn statuses(&self) -> Result<BTreeMap<i64, CalibrationStatus>, Stopped> {
-        self.look(|farm, now| {
+    /// Returns the status of every calibration in progress with an id in a range, by id.
+    pub async fn statuses(
+        &self,
+        ids: RangeInclusive<i64>,
+    ) -> Result<BTreeMap<i64, CalibrationStatus>, Stopped> {
+        self.look(move |farm, now| {
             farm.ids()
                 .into_iter()
+                .filter(|id| ids.contains(id))
                 .filter_map(|id| Some((id, farm.status(id, now)?)))
                 .collect()
         })
@@ -221,6 +238,9 @@ struct Parked {
 struct Thread {
     farm: Farm,
     sink: FactSink,
+    compute: Compute,
+    /// The thread's own address, for the compute threads.
+    own: Weak<mpsc::Sender<Message>>,
     rewinds: UnboundedSender<Durable<i64>>,
     parked: VecDeque<Parked>,
     /// The earliest `until_ms` of the parked exchanges `[ms]`.
@@ -243,7 +263,7 @@ impl Thread {
                 self.handle(message, now_ms);
             }
             if Instant::now() >= next_tick {
-                // Renewals may have arrived during a long step of a sampler. They count before leases expire.
+                // Renewals may have arrived while the machine was busy with others. They count before leases expire.
                 while let Ok(message) = receiver.try_recv() {
                     if matches!(message, Message::Stop) {
                         return;
@@ -258,6 +278,7 @@ impl Thread {
                 tracing::error!("the store no longer accepts facts; the coordinator stops");
                 return;
             }
+            self.hand_out_steps();
             self.serve_parked(now_ms);
             heart.rests();
         }
@@ -275,6 +296,20 @@ impl Thread {
             let _ = self.rewinds.send((id, fact));
         }
         Some(fact)
+    }
+
+    /// Gives the compute threads the steps that have become due.
+    fn hand_out_steps(&mut self) {
+        self.compute.add(self.farm.take_steps());
+        self.compute.hand_out(|| {
+            // Without a handle on this thread, it ends.
+            let own = self.own.upgrade()?;
+            let tell: Tell = Box::new(move |computed| {
+                // If the thread has ended, nobody needs the step.
+                let _ = own.send(Message::Computed(computed));
+            });
+            Some(tell)
+        });
     }
 
     fn handle(&mut self, message: Message, now_ms: u64) {
@@ -295,6 +330,15 @@ impl Thread {
                 let _ = reply.send(result.map(|state| (state, fact)));
             }
             Message::RewindFailed { id, reason } => self.farm.rewind_failed(id, &reason),
+            Message::Computed(Computed { thread, result }) => {
+                self.compute.rests(thread);
+                match result {
+                    Ok(stepped) => self.farm.stepped(stepped, now_ms),
+                    Err(failed) => self
+                        .farm
+                        .step_failed(failed.calibration, failed.number, &failed.reason),
+                }
+            }
             Message::Look { look } => look(&self.farm, now_ms),
             Message::Stop => {}
         }
@@ -373,3 +417,6 @@ impl Thread {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
