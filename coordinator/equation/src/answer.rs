@@ -112,7 +112,7 @@ pub fn search(curve: &LocatedCurve, library: &FormulaLibrary) -> Answer {
 /// Fits a formula of the library in each way in which it may make the law.
 ///
 /// Every size has the same prior probability, and so have the formulas of one size, of which one with a transcendental function inside
-/// another counts as a tenth. The prior of a strength is normal with twice the curve's root mean square, that of a coefficient c of the
+/// another counts as a tenth, and one with a square or a root by 0.3 for each. The prior of a strength is normal with twice the curve's root mean square, that of a coefficient c of the
 /// variable over its greatest magnitude is normal with sd 1.5 in arsinh c, that of an exponent normal with sd 1.5, and that of a
 /// threshold uniform over the range.
 ///

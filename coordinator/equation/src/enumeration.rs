@@ -13,6 +13,8 @@ const PROBES: [[f64; CONSTANTS]; 2] = [[0.77, 1.39, 0.53], [-0.31, -0.83, -1.27]
 
 /// Prior weight of a formula with a transcendental function inside another, over that of one without.
 const NESTED: f64 = 0.1;
+/// Prior weight of a formula by each square and each root in it.
+const FIXED_POWER: f64 = 0.3;
 /// Nodes by which a formula of a pure number without a scale is shorter at most.
 const SHORTER: usize = 2;
 
@@ -66,7 +68,7 @@ impl FormulaLibrary {
 
 /// Returns the prior weight of a formula among those of its size.
 fn weight(tree: &Tree) -> f64 {
-    libm::pow(NESTED, tree.nested as f64)
+    libm::pow(NESTED, tree.nested as f64) * libm::pow(FIXED_POWER, tree.fixed_powers as f64)
 }
 
 /// Enumerates trees, and returns those that are formulas of their own.

@@ -66,6 +66,10 @@ pub struct Tree {
     /// Whether it is a product of powers of the variable.
     is_monomial: bool,
     has_power: bool,
+    /// Whether it has two values, so that every function of it is a sum or product with a constant.
+    is_step: bool,
+    /// Number of squares and square roots.
+    pub(crate) fixed_powers: usize,
     /// Number of transcendental functions that stand in another one.
     pub(crate) nested: usize,
     /// Whether it has a transcendental function.
@@ -100,6 +104,8 @@ impl Tree {
             absorbs_power: is_constant,
             is_monomial: op == Op::Variable,
             has_power: false,
+            is_step: op == Op::Threshold,
+            fixed_powers: 0,
             nested: 0,
             is_transcendental: false,
         }
@@ -155,7 +161,7 @@ impl Tree {
             }
             _ => true,
         };
-        if is_redundant || child.is_number() {
+        if is_redundant || child.is_number() || child.is_step {
             return None;
         }
         let unit = child.unit.unary(op)?;
@@ -175,6 +181,8 @@ impl Tree {
             absorbs_power: is_power || op == Op::Exp && child.absorbs_factor,
             is_monomial: keeps && child.is_monomial,
             has_power: is_power || child.has_power,
+            is_step: false,
+            fixed_powers: child.fixed_powers + usize::from(matches!(op, Op::Sqrt | Op::Square)),
             nested: child.nested + usize::from(transcends && child.is_transcendental),
             is_transcendental: transcends || child.is_transcendental,
         })
@@ -187,6 +195,11 @@ impl Tree {
             return None;
         }
         let is_sum = matches!(op, Op::Add | Op::Subtract);
+        let is_step = a.is_number() && b.is_step || a.is_step && b.is_number();
+        if is_step && !(a.op == Op::Constant && b.op == Op::Threshold && matches!(op, Op::Add | Op::Multiply))
+        {
+            return None;
+        }
         let is_same = Arc::ptr_eq(a, b) && a.constants == 0;
         let is_redundant = match op {
             Op::Add => {
@@ -254,6 +267,8 @@ impl Tree {
             absorbs_power: false,
             is_monomial: !is_sum && a.is_monomial && b.is_monomial,
             has_power: a.has_power || b.has_power,
+            is_step,
+            fixed_powers: a.fixed_powers + b.fixed_powers,
             nested: a.nested + b.nested,
             is_transcendental: a.is_transcendental || b.is_transcendental,
             left: Some(a.clone()),
