@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use crate::op::Op;
 use crate::program::Program;
-use crate::tree::{CONSTANTS, Op, Tree};
+use crate::tree::{CONSTANTS, Tree};
 
 /// Values of the variable at which formulas are compared.
 const POINTS: [f64; 6] = [0.13, 0.29, 0.47, 0.71, 0.93, 1.21];

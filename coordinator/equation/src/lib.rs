@@ -2,7 +2,7 @@
 //! curve cannot tell from it.
 //!
 //! # Layout
-//! - `tree`, `unit`, `enumeration`: the formulas, each family of curves once, with units.
+//! - `op`, `tree`, `unit`, `enumeration`: the formulas, each family of curves once, with units.
 //! - `program`: a formula as operations, with derivatives.
 //! - `curve`, `fit`: the curve of a located law with its covariance, and the fit of one formula to it.
 //! - `answer`: the search, its probabilities and classes.
@@ -15,6 +15,7 @@ mod curve;
 mod enumeration;
 mod fit;
 mod limit;
+mod op;
 mod program;
 mod text;
 mod tree;
@@ -25,6 +26,7 @@ pub use curve::{CurveError, Host, LocatedCurve};
 pub use enumeration::FormulaLibrary;
 pub use fit::Link;
 pub use limit::{Limit, SplittingCondition, splitting};
+pub use op::Op;
 pub use program::ConstantRole;
 pub use text::{FormulaParameter, FormulaText, ParameterKind};
-pub use tree::{Op, Tree};
+pub use tree::Tree;

@@ -1,6 +1,7 @@
 //! A formula as operations on a stack: its value, and its derivatives by its constants.
 
-use crate::tree::{CONSTANTS, Op, Tree};
+use crate::op::Op;
+use crate::tree::{CONSTANTS, Tree};
 
 /// What a constant does in a formula; its prior follows from it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -5,7 +5,8 @@ use std::fmt;
 use crate::answer::FittedFormula;
 use crate::curve::{Host, LocatedCurve};
 use crate::fit::Link;
-use crate::tree::{CONSTANTS, Op, Tree};
+use crate::op::Op;
+use crate::tree::{CONSTANTS, Tree};
 
 /// What a parameter of a formula is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! The unit of a part of a formula: a power of the variable's unit, or whatever a constant gives it.
 
-use crate::tree::Op;
+use crate::op::Op;
 
 /// The unit of a part of a formula.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
