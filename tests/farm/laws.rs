@@ -26,6 +26,21 @@ fn check_forms(outside: &serde_json::Value) {
     }
 }
 
+/// Checks that the classes of formulas and all others have the probability 1, and that the sentence names the first.
+fn check_formulas(round: &serde_json::Value) {
+    let formulas = &round["outside"]["formulas"];
+    let classes: Vec<&serde_json::Value> = items(&formulas["classes"]).collect();
+    let of_classes = classes.iter().map(|class| float(&class["probability"]));
+    let sum = of_classes.sum::<f64>() + float(&formulas["others"]);
+    assert!((sum - 1.0).abs() < 1e-9, "{sum}");
+    let first = word(&classes[0]["members"][0]["formula"]);
+    assert!(word(&round["text"]).contains(first), "{first}: {}", round["text"]);
+    for class in classes {
+        let name = word(&class["effect_file"]).lines().next().unwrap_or_default();
+        assert!(name.starts_with("name = \"shear_v_t_formula_"), "{name}");
+    }
+}
+
 #[test]
 fn a_model_with_a_law_is_searched_again_to_a_verdict() {
     // The shear stress depends on two variables, of which a law has one, so that a misfit is left after the law.
@@ -37,6 +52,7 @@ fn a_model_with_a_law_is_searched_again_to_a_verdict() {
     let rounds = summary["discovery"]["rounds"].as_array().expect("searches");
     assert_eq!(rounds[0]["verdict"], "not_in_library");
     check_forms(&rounds[0]["outside"]);
+    check_formulas(&rounds[0]);
     assert_eq!(rounds[0]["given"], serde_json::json!([]));
     let given: Vec<&str> = items(&rounds[1]["given"]).map(word).collect();
     assert!(given.len() == 1 && given[0].contains("shear_v_t"), "{given:?}");

@@ -176,6 +176,20 @@ fn ranked(law: &OutsideLaw, candidates: &[usize]) {
     assert_eq!(law.forms[0].class, 1);
 }
 
+/// Checks that the curve of a law over w, without its prior, is a line of this slope within its covariance.
+#[track_caller]
+fn check_line(law: &OutsideLaw, slope: f64) {
+    let curve = law.curve.as_ref().unwrap();
+    let covariance = |k: usize, l: usize| curve.covariance[5 * k + l];
+    for k in [0, 2] {
+        let rise = curve.knots[k + 2] - curve.knots[k];
+        let sd = (covariance(k, k) + covariance(k + 2, k + 2) - 2.0 * covariance(k, k + 2)).sqrt();
+        assert!(sd < 0.1 && (rise - slope).abs() < 3.0 * sd, "{rise}, sd {sd}");
+    }
+    // No datum lies at the second knot: its prior is five times as wide as that of the curve.
+    assert!((covariance(1, 1) - 25.0).abs() < 1e-6);
+}
+
 #[test]
 fn a_law_and_an_effect_that_act_together_are_fitted_together() {
     let line_over_w = OVER_W + 1;
@@ -189,6 +203,7 @@ fn a_law_and_an_effect_that_act_together_are_fitted_together() {
     assert_eq!(law.candidate, line_over_w);
     // The curve was fitted beside the effect, too.
     ranked(&law, &[line_over_w, OVER_W]);
+    check_line(&law, 0.8);
     assert!(
         (law.forms[0].parameters[0] - 0.8).abs() < 0.1,
         "{:?}",

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
+use crate::law_formulas::LawFormulas;
 use job::{EffectOnNodes, effect_name};
 use shared::channel::Channel;
 
@@ -340,6 +341,10 @@ pub struct Outside {
     /// records of earlier versions.
     #[serde(default)]
     pub forms: Vec<FittedForm>,
+    /// The formulas that the curve may follow; null where the curve was not fitted beyond the effects of the law, and in records of
+    /// earlier versions.
+    #[serde(default)]
+    pub formulas: Option<LawFormulas>,
 }
 
 /// A form of a law outside the library, with its fitted values.

@@ -8,13 +8,14 @@
 //! - `verification`: how many answers of workers are verified.
 //! - `token`: bearer tokens and their roles.
 //! - `study_details`: what people say of a study.
-//! - `discovery`: the record of a search for a missing effect.
+//! - `discovery`: the record of a search for a missing effect. `law_formulas`: the formulas of a law that it found.
 
 mod calibration;
 mod discovery;
 mod estimate;
 mod evaluation_key;
 pub mod fact;
+mod law_formulas;
 mod membership;
 mod replay;
 mod sample;
@@ -32,6 +33,7 @@ pub use discovery::{
 pub use estimate::EstimateRow;
 pub use evaluation_key::{EvaluationKey, HOLDOUT_RUNS_FROM, LIKELIEST, PREDICTIONS_FROM};
 pub use fact::{Dispute, EvaluationRow, Fact, Fingerprint, Kept};
+pub use law_formulas::{FormulaClass, LawFormula, LawFormulas, SplittingCondition};
 pub use membership::{Change, Membership, Role};
 pub use replay::Stored;
 pub use sample::{Prediction, PriorDraw, RejectionReason, StageRow};

@@ -264,6 +264,7 @@ pub fn grown() -> Study {
         effect_file: "name = \"<script>\"\n".into(),
         curve: vec![[0.0, 1.0], [0.3, 1.0], [0.31, 1.2], [0.6, 1.2]],
         left_out_nats: [8.0, 3.0],
+        formulas: None,
         forms: vec![
             form("step", "if(slip > 0.3, 1.2 * tau, tau)", 12.0, 0.711, 1),
             form("linear", "tau * (1 + 0.4 * slip)", 11.1, 0.289, 1),

@@ -18,6 +18,7 @@ use super::candidate::{CandidateEffect, candidate_of};
 use super::curves::curves;
 use super::entry::{CandidateEntry, LawEntry};
 use super::law::curve;
+use super::law::equation::formulas;
 use super::law::file::free_name;
 use super::law::formula::formula;
 use super::models::SearchModels;
@@ -309,6 +310,10 @@ fn outside(models: &SearchModels, outside: &OutsideLaw) -> Option<(Outside, Exte
         curve: curve::curve(text, &best, &law.dependence).unwrap_or_default(),
         effect_file: effect_file.clone(),
         left_out_nats: outside.left_out_nats,
+        formulas: outside
+            .curve
+            .as_ref()
+            .and_then(|curve| formulas(&law.dependence, curve)),
         forms: outside
             .forms
             .iter()

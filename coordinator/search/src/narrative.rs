@@ -297,7 +297,7 @@ fn verdict(
             )
         }
         (SearchVerdict::NotInLibrary, Some(law)) => format!(
-            "not in the library: the missing law acts on {} and depends on {}, in the form of {} {} ({:.1} nats over {kind}; left-out levels are predicted better by {:.1} nats){}",
+            "not in the library: the missing law acts on {} and depends on {}, in the form of {} {} ({:.1} nats over {kind}; left-out levels are predicted better by {:.1} nats){}{}",
             law.acts_on.replace('_', " "),
             law.depends_on.replace('_', " "),
             if law.form.starts_with('i') { "an" } else { "a" },
@@ -305,7 +305,8 @@ fn verdict(
             law.log_bayes_factor,
             law.left_out_nats[0],
             law.forms_alike()
-                .map_or(String::new(), |alike| format!("; the forms {alike} fit alike"))
+                .map_or(String::new(), |alike| format!("; the forms {alike} fit alike")),
+            formulas(models, conclusion, law)
         ),
         _ => match conclusion.chi_square_best {
             Some(chi) if chi.is_wrong() => format!(
@@ -317,6 +318,17 @@ fn verdict(
             _ => undecided(effects),
         },
     }
+}
+
+/// Writes what formulas the law may follow: `; as a formula the curve is ...`; empty where they were not searched.
+fn formulas(models: &SearchModels, conclusion: &Conclusion, law: &Outside) -> String {
+    let claimed = conclusion.outside.as_ref();
+    let entry = claimed.and_then(|claimed| models.laws.get(claimed.law));
+    let words = entry.map(|entry| entry.dependence.depends_on.words());
+    let sentence = words
+        .zip(law.formulas.as_ref())
+        .and_then(|(words, formulas)| formulas.words(words));
+    sentence.map_or(String::new(), |sentence| format!("; {sentence}"))
 }
 
 /// Writes the sentence for data that do not decide between the explanations.

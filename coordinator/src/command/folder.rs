@@ -22,7 +22,7 @@ use job::{Apply, Spec};
 use record::CalibrationRow;
 use report::{StudyFile, terminal};
 use result::DiscoveryRound;
-use result::discovery::effect_file;
+use result::discovery::effect_files;
 use store::IdPage;
 
 /// Interval between two updates of the display.
@@ -265,7 +265,7 @@ impl Folder {
         ] {
             files.push((file.name(), self.service.study_file(calibration, file).await?));
         }
-        files.extend(rounds.iter().filter_map(|round| effect_file(&round.record)));
+        files.extend(rounds.iter().flat_map(|round| effect_files(&round.record)));
         for (name, text) in files {
             let path: PathBuf = self.out.join(&name);
             let partial = self.out.join(format!("{name}.part"));

@@ -18,7 +18,7 @@ use super::place::Place;
 use crate::config::{AddRunsArguments, DiscoverArguments, ExtendArguments, GrowthArguments, SourceArguments};
 use record::Discovery;
 use report::terminal::discovery;
-use result::discovery::effect_file;
+use result::discovery::effect_files;
 
 /// Interval between two requests for the state of a search at a service.
 const LOOK: Duration = Duration::from_millis(500);
@@ -45,7 +45,7 @@ pub(super) async fn discover(config: &DiscoverArguments) -> anyhow::Result<()> {
         tokio::time::sleep(LOOK).await;
     }
     let record: Discovery = place.get(&path).await?;
-    if let Some((name, text)) = effect_file(&record) {
+    for (name, text) in effect_files(&record) {
         std::fs::write(&name, text).context(name)?;
     }
     let url = format!("--url {}", source.url());

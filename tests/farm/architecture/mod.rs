@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use farm_tests::workspace::{files, root, text};
 
 /// The folder and the name of every crate of the workspace.
-const CRATES: [(&str, &str); 22] = [
+const CRATES: [(&str, &str); 23] = [
     ("shared", "shared"),
     ("shared/formula", "formula"),
     ("shared/signal", "signal"),
@@ -20,6 +20,7 @@ const CRATES: [(&str, &str); 22] = [
     ("coordinator", "coordinator"),
     ("coordinator/inference", "inference"),
     ("coordinator/discovery", "discovery"),
+    ("coordinator/equation", "equation"),
     ("coordinator/export", "export"),
     ("coordinator/farm", "farm"),
     ("coordinator/import", "import"),
@@ -38,7 +39,7 @@ const CRATES: [(&str, &str); 22] = [
 ];
 
 /// The dependencies that each crate may have on other crates of the workspace.
-const DIRECTION: [(&str, &str); 20] = [
+const DIRECTION: [(&str, &str); 21] = [
     ("shared/formula", ""),
     ("shared/signal", ""),
     ("shared/statistics", ""),
@@ -46,6 +47,7 @@ const DIRECTION: [(&str, &str); 20] = [
     ("worker/scm", "formula signal"),
     ("coordinator/inference", "statistics"),
     ("coordinator/discovery", "inference statistics"),
+    ("coordinator/equation", ""),
     ("coordinator/import", "formula shared"),
     ("coordinator/job", "formula inference shared statistics"),
     ("coordinator/page", ""),
@@ -65,7 +67,7 @@ const DIRECTION: [(&str, &str); 20] = [
     ),
     (
         "coordinator/search",
-        "discovery formula inference job record shared statistics",
+        "discovery equation formula inference job record shared statistics",
     ),
     (
         "coordinator/farm",
@@ -178,7 +180,7 @@ fn manifests_keep_the_direction_of_dependencies() {
 fn pure_crates_know_no_runtime_network_database_or_chance() {
     let impure = set("tokio axum sqlx reqwest rayon tracing anyhow clap indicatif");
     let pure = "shared shared/formula shared/signal shared/statistics worker/scm coordinator/inference coordinator/discovery \
-        coordinator/export coordinator/import coordinator/job coordinator/page coordinator/prediction coordinator/record coordinator/report coordinator/result";
+        coordinator/equation coordinator/export coordinator/import coordinator/job coordinator/page coordinator/prediction coordinator/record coordinator/report coordinator/result";
     for krate in set(pure) {
         let found = &dependencies(&krate) & &impure;
         assert!(found.is_empty(), "{krate} imports {found:?}");
@@ -192,6 +194,7 @@ fn pure_crates_know_no_runtime_network_database_or_chance() {
             "shared/statistics/src",
             "coordinator/inference/src",
             "coordinator/discovery/src",
+            "coordinator/equation/src",
         ],
         &["rand::", "rand_chacha::"],
         &["shared/statistics/src/rng.rs"],
@@ -269,6 +272,7 @@ fn pure_modules_read_no_clock() {
         "worker/scm/src",
         "coordinator/inference/src",
         "coordinator/discovery/src",
+        "coordinator/equation/src",
         "shared/src",
         "shared/statistics/src",
         "coordinator/farm/src/calibration",

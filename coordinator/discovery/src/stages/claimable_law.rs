@@ -4,6 +4,7 @@ use crate::chi_square::FitChiSquare;
 use crate::laplace::fit::LaplaceFit;
 use crate::probability::DETECTED;
 use crate::stages::hypotheses::{EffectCombination, FittedLaw, Hypotheses, candidate_set};
+use crate::stages::law_curve::LawCurve;
 use crate::stages::law_forms::FittedForm;
 use crate::task::SearchTask;
 
@@ -25,6 +26,8 @@ pub(super) struct ClaimableLaw {
     /// Log evidence over that of the base.
     pub(super) log_bayes_factor: f64,
     pub(super) fit: LaplaceFit,
+    /// What the data say of its curve; `None` where the curve was not fitted beyond these effects.
+    pub(super) curve: Option<LawCurve>,
     /// Every fitted form of the law: the claimed one, then the others by falling Bayes factor.
     pub(super) forms: Vec<FittedForm>,
     /// Log predictive density of left-out levels over that of the base, and over that of the library's best.
@@ -93,6 +96,7 @@ impl ClaimableLaw {
             effects: vec![law.candidate],
             log_bayes_factor: law.log_bayes_factor,
             fit: law.fit.clone(),
+            curve: law.curve.clone(),
             forms: claimed_first(law.candidate, law.forms.clone()),
             left_out: law.left_out.unwrap_or([0.0; 2]),
         })
@@ -117,12 +121,16 @@ impl ClaimableLaw {
             &set.fit,
             first..first + parameters(&candidate),
         );
+        let mut beyond = candidate_set(effects);
+        beyond.remove(&candidate);
+        let scanned = hypotheses.law_beyond(&beyond, law);
         Some(Self {
             law,
             candidate,
             effects: effects.to_vec(),
             log_bayes_factor: set.log_bayes_factor,
             fit: set.fit.clone(),
+            curve: scanned.and_then(|(_, scanned)| scanned.curve.clone()),
             forms: forms_beside(hypotheses, set, law, claimed),
             left_out: validated.left_out,
         })

@@ -8,6 +8,7 @@ use crate::probability::DETECTED;
 use crate::stages::claimable_law::ClaimableLaw;
 use crate::stages::held_back::held_back;
 use crate::stages::hypotheses::{FittedReplacement, Hypotheses};
+use crate::stages::law_curve::LawCurve;
 use crate::stages::law_forms::{self, WeighedForm};
 use crate::stages::next_run::{InformativeRun, RunChoice};
 use crate::stages::noise_support::unsupported_noise;
@@ -60,6 +61,8 @@ pub struct OutsideLaw {
     pub log_bayes_factor: f64,
     /// The curve and every fitted form of the law: the claimed one, then the others by falling Bayes factor.
     pub forms: Vec<WeighedForm>,
+    /// The knots of its curve with their covariance; `None` where the curve was not fitted beyond the effects of this explanation.
+    pub curve: Option<LawCurve>,
     /// Log predictive density of left-out levels over that of the base, and over that of the library's best.
     pub left_out_nats: [f64; 2],
 }
@@ -71,6 +74,7 @@ impl OutsideLaw {
             candidate: law.candidate,
             log_bayes_factor: law.log_bayes_factor,
             forms: law_forms::weighed(&law.forms, &law.fit, likelihood, misfit),
+            curve: law.curve.as_ref().map(|curve| curve.with_misfit(misfit)),
             left_out_nats: law.left_out,
         }
     }

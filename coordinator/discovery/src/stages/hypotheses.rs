@@ -8,6 +8,7 @@ use crate::effect_search::ranking::EffectRanking;
 use crate::laplace::evidence::log_sum_exp;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::probability::{DETECTED, counted_evidence};
+use crate::stages::law_curve::LawCurve;
 use crate::stages::law_forms::FittedForm;
 use crate::stages::scored_fit::ScoredFit;
 use statistics::likelihood::Likelihood;
@@ -139,6 +140,8 @@ pub(super) struct FittedLaw {
     /// Log prior odds of a law that changes a stress over this one: [`DETECTED`] for a law that changes a channel \[nats\].
     pub(super) handicap: f64,
     pub(super) fit: LaplaceFit,
+    /// What the data say of its curve.
+    pub(super) curve: Option<LawCurve>,
     /// The curve and every form that was fitted, by falling Bayes factor.
     pub(super) forms: Vec<FittedForm>,
     /// Log predictive density of the left-out data over that of the base, and over that of the library's best combination.

@@ -11,6 +11,7 @@ use crate::probability::DETECTED;
 use crate::stages::branch::SearchBranch;
 use crate::stages::cross_validation::{ComparedModel, CrossValidation};
 use crate::stages::hypotheses::{EffectCombination, FittedLaw, LawScan};
+use crate::stages::law_curve::LawCurve;
 use crate::stages::law_forms::FittedForm;
 use crate::stages::stage::Stage;
 use crate::stages::state::SearchState;
@@ -132,6 +133,7 @@ impl SearchState {
                 mean_log_bayes_factor: factor,
                 handicap: self.task.handicap(law),
                 fit: fit.clone(),
+                curve: LawCurve::new(fit, &self.task.likelihood, branch.added_parameters(fit)),
                 forms: vec![FittedForm::new(
                     candidate,
                     factor,

@@ -18,7 +18,7 @@
 //! | 12 | predictions of left-out levels by the leading sets | `last_stages`, `cross_validation` |
 //! | 13 | next runs: the runs that discriminate best between the explanations | `last_stages`, `next_run`, `run_information` |
 //! | 13 | errors that runs share, beside the best explanation | `shared_errors` |
-//! | 13 | probabilities, verdict and conclusion | `weighing`, `replacement`, `prior_sensitivity`, `noise_support`, `held_back`, `claimable_law`, `law_rivals`, `law_forms`, `verdict`, `conclusion` |
+//! | 13 | probabilities, verdict and conclusion | `weighing`, `replacement`, `prior_sensitivity`, `noise_support`, `held_back`, `claimable_law`, `law_rivals`, `law_curve`, `law_forms`, `verdict`, `conclusion` |
 //!
 //! # Layout
 //! - `ask_tell`: how a discovery is asked and told. `query`: a request to the model.
@@ -40,6 +40,7 @@ mod held_back;
 mod hypotheses;
 mod last_stages;
 mod law_beside_effects;
+pub(crate) mod law_curve;
 pub(crate) mod law_forms;
 mod law_rivals;
 mod law_substitutes;

@@ -168,6 +168,7 @@ mod tests {
                 effect_file: String::new(),
                 curve: Vec::new(),
                 left_out_nats: [0.0; 2],
+                formulas: None,
                 forms: Vec::new(),
             });
             study.rounds = vec![result::discovery::DiscoveryRound {

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
-use record::{ChiSquare, Discovery, FittedForm, JudgedEffect, JudgedSet};
+use job::effect_name;
+use record::{ChiSquare, Discovery, FittedForm, FormulaClass, JudgedEffect, JudgedSet, LawFormulas};
 
 use super::column::{cell, width};
 use super::table::Table;
@@ -62,6 +63,7 @@ pub fn text(record: &Discovery, calibration: i64, place: &str, folder: &Path) ->
             outside.acts_on, outside.depends_on, outside.form, outside.log_bayes_factor
         );
         text += &forms(&outside.forms);
+        text += &outside.formulas.as_ref().map_or(String::new(), formulas);
     }
     if let Some((name, _)) = effect_file(record) {
         let _ = writeln!(text, "its effect file: {}", folder.join(name).display());
@@ -169,6 +171,25 @@ fn forms(forms: &[FittedForm]) -> String {
         .text(forms.iter().take(FORMS))
 }
 
+/// Tabulates the classes of formulas of a law, each by its simplest member, with its effect file.
+fn formulas(formulas: &LawFormulas) -> String {
+    let file = |class: &FormulaClass| {
+        effect_name(&class.effect_file).map_or("-".into(), |name| format!("{name}.toml"))
+    };
+    let width = formulas.classes.iter().map(|class| file(class).len()).max();
+    Table::<&FormulaClass>::new()
+        .left(width.unwrap_or(0), "formula in the file", |class| file(class))
+        .right(11, "probability", |class| format!("{:.4}", class.probability))
+        .right(6, "alike", |class| class.members.len().saturating_sub(1))
+        .apart(0, "simplest member", |class| {
+            class
+                .members
+                .first()
+                .map_or(String::new(), |member| member.formula.clone())
+        })
+        .text(formulas.classes.iter())
+}
+
 /// Removes each `EFFECT.WHEEL` from a list that contains `EFFECT`.
 fn folded(names: &[String]) -> Vec<&str> {
     let is_own = |name: &&String| match name.split_once('.') {
@@ -232,6 +253,7 @@ mod tests {
             effect_file: "name = \"shear_j_log\"\n".into(),
             curve: Vec::new(),
             left_out_nats: [8.0, 3.0],
+            formulas: None,
             forms: vec![
                 form("log", 12.0),
                 form("decay", 11.0),

@@ -33,6 +33,18 @@ pub fn effect_file(record: &Discovery) -> Option<(String, String)> {
     Some((format!("{}.toml", effect_name(text)?), text.clone()))
 }
 
+/// Returns the names and the texts of a search's effect files: that of the effect to add, and of the formulas of a law.
+pub fn effect_files(record: &Discovery) -> Vec<(String, String)> {
+    let formulas = record.outside.iter().flat_map(|outside| &outside.formulas);
+    let formulas = formulas
+        .flat_map(|formulas| &formulas.classes)
+        .filter_map(|class| {
+            let name = effect_name(&class.effect_file)?;
+            Some((format!("{name}.toml"), class.effect_file.clone()))
+        });
+    effect_file(record).into_iter().chain(formulas).collect()
+}
+
 /// Returns the arguments of the command that adds the named effect; `folder` contains its effect file.
 pub fn arguments(record: &Discovery, folder: &std::path::Path) -> Option<String> {
     Some(match record.extension.as_ref()? {

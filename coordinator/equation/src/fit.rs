@@ -1,0 +1,382 @@
+//! The fit of one formula to a curve, and its evidence by Laplace's approximation.
+
+use nalgebra::{Matrix4, Vector4};
+
+use crate::curve::LocatedCurve;
+use crate::program::{ConstantRole, Program};
+use crate::tree::CONSTANTS;
+
+/// Most parameters of a formula: its strength and its constants.
+pub(crate) const PARAMETERS: usize = 1 + CONSTANTS;
+/// Prior sd of the strength, over the root mean square of the curve, where the formula has a root mean square of 1.
+const STRENGTH_SD: f64 = 2.0;
+/// Prior sd of a constant's coordinate.
+const CONSTANT_SD: f64 = 1.5;
+/// Starts that are tried, by the number of constants, and those from which a fit begins.
+const STARTS: [usize; PARAMETERS] = [1, 12, 24, 40];
+const BEGUN: usize = 3;
+const FIRST_STEPS: usize = 5;
+const STEPS: usize = 30;
+/// A fit ends where a step gains less.
+const LEAST_GAIN: f64 = 1e-5;
+const FIRST_DAMPING: f64 = 1e-2;
+const MAX_DAMPING: f64 = 1e8;
+
+/// How a formula g with the strength a makes the values of a curve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Link {
+    /// a g: an addition, or the logarithm of a factor exp(a g).
+    Proportional,
+    /// The logarithm of a factor 1 + a g.
+    Relative,
+}
+
+/// A formula, fitted to a curve.
+#[derive(Debug, Clone)]
+pub(crate) struct Fit {
+    /// Strength, in units of the formula's root mean square, and coordinates of the constants.
+    pub(crate) place: [f64; PARAMETERS],
+    pub(crate) log_evidence: f64,
+    /// Half the squares of residuals.
+    pub(crate) misfit: f64,
+    pub(crate) covariance: Matrix4<f64>,
+}
+
+/// A formula with what it is fitted to.
+pub(crate) struct Problem<'a> {
+    pub(crate) curve: &'a LocatedCurve,
+    pub(crate) program: &'a Program,
+    pub(crate) link: Link,
+}
+
+/// Residuals and derivatives at one place.
+struct Slope {
+    objective: f64,
+    gradient: Vector4<f64>,
+    hessian: Matrix4<f64>,
+}
+
+impl Problem<'_> {
+    /// Returns the constants of coordinates: sinh of a coefficient's, the exponent itself, a threshold within the range.
+    pub(crate) fn constants(&self, place: &[f64; PARAMETERS]) -> [f64; CONSTANTS] {
+        let mut constants = [0.0; CONSTANTS];
+        for (k, role) in self.program.roles.iter().enumerate() {
+            constants[k] = match role {
+                ConstantRole::Coefficient => libm::sinh(place[k + 1]),
+                ConstantRole::Exponent | ConstantRole::Threshold => place[k + 1],
+            };
+        }
+        constants
+    }
+
+    /// Returns the derivatives of the constants by their coordinates.
+    fn stretches(&self, place: &[f64; PARAMETERS]) -> [f64; CONSTANTS] {
+        let mut stretches = [1.0; CONSTANTS];
+        for (k, role) in self.program.roles.iter().enumerate() {
+            if *role == ConstantRole::Coefficient {
+                stretches[k] = libm::cosh(place[k + 1]);
+            }
+        }
+        stretches
+    }
+
+    fn strength_sd(&self) -> f64 {
+        STRENGTH_SD * self.curve.size.max(f64::MIN_POSITIVE)
+    }
+
+    /// Half the squares of the coordinates over their prior sds.
+    fn penalty(&self, place: &[f64; PARAMETERS]) -> f64 {
+        let strength = place[0] / self.strength_sd();
+        let fitted = self.program.roles.iter().zip(&place[1..]);
+        let fitted = fitted.filter(|(role, _)| **role != ConstantRole::Threshold);
+        let squares: f64 = fitted.map(|(_, t)| (t / CONSTANT_SD) * (t / CONSTANT_SD)).sum();
+        0.5 * (strength * strength + squares)
+    }
+
+    /// Returns the values of the formula over their root mean square, and that.
+    fn shape(&self, constants: &[f64]) -> Option<(Vec<f64>, f64)> {
+        let points = self.curve.points.iter();
+        let mut values: Vec<f64> = points.map(|x| self.program.value(*x, constants)).collect();
+        let size = root_mean_square(values.iter().copied())?;
+        values.iter_mut().for_each(|value| *value /= size);
+        Some((values, size))
+    }
+
+    fn linked(&self, value: f64) -> f64 {
+        match self.link {
+            Link::Proportional => value,
+            Link::Relative => libm::log(1.0 + value),
+        }
+    }
+
+    fn misfit(&self, strength: f64, shape: &[f64]) -> f64 {
+        let predicted: Vec<f64> = shape.iter().map(|g| self.linked(strength * g)).collect();
+        let whitened = self.curve.whiten(&predicted);
+        let pairs = whitened.iter().zip(&self.curve.whitened);
+        let squares: f64 = pairs.map(|(a, b)| (a - b) * (a - b)).sum();
+        if squares.is_finite() {
+            0.5 * squares
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// Completes a start by the best strength, and returns it with its objective.
+    fn start(&self, mut place: [f64; PARAMETERS]) -> Option<(f64, [f64; PARAMETERS])> {
+        let (shape, _) = self.shape(&self.constants(&place))?;
+        let whitened = self.curve.whiten(&shape);
+        let least = 1.0 / (self.strength_sd() * self.strength_sd());
+        let target = match self.link {
+            Link::Proportional => self.curve.whitened.clone(),
+            Link::Relative => {
+                let changes: Vec<f64> = self.curve.values.iter().map(|y| libm::expm1(*y)).collect();
+                self.curve.whiten(&changes)
+            }
+        };
+        let products: f64 = whitened.iter().zip(&target).map(|(a, b)| a * b).sum();
+        let squares: f64 = whitened.iter().map(|a| a * a).sum();
+        place[0] = products / (squares + least);
+        if self.link == Link::Relative {
+            // The factor stays positive.
+            let lowest = shape.iter().fold(0.0_f64, |lowest, g| lowest.min(place[0] * g));
+            place[0] *= (0.9 / -lowest).min(1.0);
+        }
+        let objective = self.misfit(place[0], &shape) + self.penalty(&place);
+        objective.is_finite().then_some((objective, place))
+    }
+
+    /// Lists starts: an even sequence over the prior, with a threshold in each gap between points.
+    fn starts(&self) -> Vec<[f64; PARAMETERS]> {
+        let roles = &self.program.roles;
+        let points = &self.curve.points;
+        let threshold = roles.iter().position(|role| *role == ConstantRole::Threshold);
+        let others = roles.len() - usize::from(threshold.is_some());
+        let gaps = if threshold.is_some() { points.len() - 1 } else { 1 };
+        let per_gap = match threshold {
+            Some(_) => [1, 4, 8, 8][others],
+            None => STARTS[others],
+        };
+        let mut starts = Vec::with_capacity(gaps * per_gap);
+        for gap in 0..gaps {
+            for index in 0..per_gap {
+                let mut place = [0.0; PARAMETERS];
+                let mut dimension = 0;
+                for (k, role) in roles.iter().enumerate() {
+                    place[k + 1] = match role {
+                        ConstantRole::Threshold => 0.5 * (points[gap] + points[gap + 1]),
+                        _ => {
+                            dimension += 1;
+                            CONSTANT_SD * normal_quantile(even(index + 1, dimension - 1))
+                        }
+                    };
+                }
+                starts.push(place);
+            }
+        }
+        starts
+    }
+
+    /// Fits the formula; `None` where it is undefined or has a pole within the range from every start.
+    pub(crate) fn fit(&self) -> Option<Fit> {
+        let mut starts: Vec<(f64, [f64; PARAMETERS])> = self
+            .starts()
+            .into_iter()
+            .filter_map(|place| self.start(place))
+            .collect();
+        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        starts.truncate(BEGUN);
+        let mut fits: Vec<_> = starts
+            .into_iter()
+            .filter_map(|(_, place)| self.descended(place, FIRST_STEPS))
+            .filter(|(place, _)| self.is_regular(place))
+            .collect();
+        fits.sort_by(|a, b| a.1.objective.total_cmp(&b.1.objective));
+        let (place, _) = fits.into_iter().next()?;
+        let (place, slope) = self.descended(place, STEPS)?;
+        if !self.is_regular(&place) {
+            return None;
+        }
+        let cholesky = slope.hessian.cholesky()?;
+        let log_root: f64 = (0..PARAMETERS).map(|k| libm::log(cholesky.l()[(k, k)])).sum();
+        let roles = self.program.roles.iter();
+        let widths: f64 = roles
+            .map(|role| match role {
+                // One gap of all: the curve does not say where within it.
+                ConstantRole::Threshold => libm::log((self.curve.points.len() - 1) as f64),
+                _ => libm::log(CONSTANT_SD),
+            })
+            .sum();
+        let (shape, _) = self.shape(&self.constants(&place))?;
+        Some(Fit {
+            place,
+            log_evidence: -slope.objective - libm::log(self.strength_sd()) - widths - log_root,
+            misfit: self.misfit(place[0], &shape),
+            covariance: cholesky.inverse(),
+        })
+    }
+
+    /// Descends by damped Gauss–Newton steps (Levenberg 1944, Marquardt 1963).
+    fn descended(&self, start: [f64; PARAMETERS], steps: usize) -> Option<([f64; PARAMETERS], Slope)> {
+        let mut place = start;
+        let mut slope = self.slope(&place)?;
+        let mut damping = FIRST_DAMPING;
+        for _ in 0..steps {
+            let mut damped = slope.hessian;
+            for k in 0..PARAMETERS {
+                damped[(k, k)] *= 1.0 + damping;
+            }
+            let step = damped.cholesky()?.solve(&slope.gradient);
+            let mut next = place;
+            for (value, by) in next.iter_mut().zip(step.iter()) {
+                *value -= by;
+            }
+            match self
+                .slope(&next)
+                .filter(|reached| reached.objective < slope.objective)
+            {
+                Some(reached) => {
+                    let gain = slope.objective - reached.objective;
+                    (place, slope) = (next, reached);
+                    damping *= 0.1;
+                    if gain < LEAST_GAIN {
+                        break;
+                    }
+                }
+                None if damping > MAX_DAMPING => break,
+                None => damping = (10.0 * damping).max(FIRST_DAMPING),
+            }
+        }
+        Some((place, slope))
+    }
+
+    /// Returns the objective with its gradient and Gauss–Newton matrix; the unit matrix beyond the formula's parameters.
+    fn slope(&self, place: &[f64; PARAMETERS]) -> Option<Slope> {
+        let (constants, stretches) = (self.constants(place), self.stretches(place));
+        let duals = self
+            .curve
+            .points
+            .iter()
+            .map(|x| self.program.dual(*x, &constants));
+        let duals: Vec<_> = duals.collect();
+        let count = duals.len() as f64;
+        let size = root_mean_square(duals.iter().map(|dual| dual.value))?;
+        let used = self.program.roles.len();
+        let mut size_by = [0.0; CONSTANTS];
+        for (k, by) in size_by.iter_mut().enumerate().take(used) {
+            *by = duals.iter().map(|dual| dual.value * dual.by[k]).sum::<f64>() / (size * count);
+        }
+        let mut predicted = Vec::with_capacity(duals.len());
+        let mut columns: [Vec<f64>; PARAMETERS] = std::array::from_fn(|_| Vec::with_capacity(duals.len()));
+        for dual in &duals {
+            let shape = dual.value / size;
+            let inner = place[0] * shape;
+            let link_slope = match self.link {
+                Link::Proportional => 1.0,
+                Link::Relative => 1.0 / (1.0 + inner),
+            };
+            predicted.push(self.linked(inner));
+            columns[0].push(link_slope * shape);
+            for k in 0..used {
+                let shape_by = (dual.by[k] - shape * size_by[k]) / size;
+                columns[k + 1].push(link_slope * place[0] * shape_by * stretches[k]);
+            }
+        }
+        let whitened = self.curve.whiten(&predicted);
+        let residuals: Vec<f64> = whitened
+            .iter()
+            .zip(&self.curve.whitened)
+            .map(|(a, b)| a - b)
+            .collect();
+        let columns: Vec<Vec<f64>> = columns[..=used]
+            .iter()
+            .map(|column| self.curve.whiten(column))
+            .collect();
+        let (mut gradient, mut hessian) = (Vector4::zeros(), Matrix4::identity());
+        for (j, column) in columns.iter().enumerate() {
+            let is_fixed = j > 0 && self.program.roles[j - 1] == ConstantRole::Threshold;
+            if is_fixed {
+                continue;
+            }
+            let sd = if j == 0 { self.strength_sd() } else { CONSTANT_SD };
+            gradient[j] = dot(column, &residuals) + place[j] / (sd * sd);
+            for k in 0..=j {
+                hessian[(j, k)] = dot(column, &columns[k]);
+                hessian[(k, j)] = hessian[(j, k)];
+            }
+            hessian[(j, j)] += 1.0 / (sd * sd);
+        }
+        let objective = 0.5 * dot(&residuals, &residuals) + self.penalty(place);
+        let is_finite = objective.is_finite()
+            && hessian
+                .iter()
+                .chain(gradient.iter())
+                .all(|value| value.is_finite());
+        is_finite.then_some(Slope {
+            objective,
+            gradient,
+            hessian,
+        })
+    }
+
+    /// Returns whether the law is defined over the whole range: no divisor changes its sign, and a factor stays positive.
+    fn is_regular(&self, place: &[f64; PARAMETERS]) -> bool {
+        let constants = self.constants(place);
+        let Some((_, size)) = self.shape(&constants) else {
+            return false;
+        };
+        let mut signs: Vec<f64> = Vec::new();
+        self.curve.grid.iter().all(|x| {
+            let (mut index, mut is_pole) = (0, false);
+            let value = self.program.guarded(*x, &constants, &mut |divisor| {
+                if index == signs.len() {
+                    signs.push(divisor);
+                }
+                is_pole |= divisor * signs[index] <= 0.0;
+                index += 1;
+            });
+            !is_pole && self.linked(place[0] * value / size).is_finite()
+        })
+    }
+
+    /// Returns the law at a point of the variable over its scale; for a factor its logarithm. NaN where it is undefined.
+    pub(crate) fn law(&self, place: &[f64; PARAMETERS], size: f64, x: f64) -> f64 {
+        self.linked(place[0] * self.program.value(x, &self.constants(place)) / size)
+    }
+
+    /// Returns the root mean square of the formula over the points of the curve.
+    pub(crate) fn size(&self, place: &[f64; PARAMETERS]) -> f64 {
+        self.shape(&self.constants(place))
+            .map_or(f64::NAN, |(_, size)| size)
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Returns the root mean square; `None` where it is 0 or not finite.
+fn root_mean_square(values: impl ExactSizeIterator<Item = f64>) -> Option<f64> {
+    let count = values.len() as f64;
+    let size = (values.map(|value| value * value).sum::<f64>() / count).sqrt();
+    (size > 1e-12 && size < 1e12).then_some(size)
+}
+
+/// Returns a number of Halton's sequence, in 0 to 1.
+fn even(index: usize, dimension: usize) -> f64 {
+    let base = [2, 3, 5][dimension];
+    let (mut rest, mut share, mut value) = (index, 1.0, 0.0);
+    while rest > 0 {
+        share /= base as f64;
+        value += share * (rest % base) as f64;
+        rest /= base;
+    }
+    value
+}
+
+/// Returns a quantile of the standard normal distribution, to 0.02: it places starts alone (Hastings 1955, 26.2.22).
+fn normal_quantile(p: f64) -> f64 {
+    let tail = p.min(1.0 - p);
+    let t = libm::sqrt(-2.0 * libm::log(tail));
+    let z = t - (2.30753 + 0.27061 * t) / (1.0 + 0.99229 * t + 0.04481 * t * t);
+    if p < 0.5 { -z } else { z }
+}

@@ -1,0 +1,32 @@
+//! Which formula a curve follows: every expression up to a size is fitted, weighed by its evidence, and grouped with those that the
+//! curve cannot tell from it.
+//!
+//! # Layout
+//! - `op`, `tree`, `unit`, `enumeration`: the formulas, each family of curves once, with units.
+//! - `program`: a formula as operations, with derivatives.
+//! - `curve`, `fit`: the curve of a located law with its covariance, and the fit of one formula to it.
+//! - `answer`: the search, its probabilities and classes.
+//! - `limit`: what a formula says beyond the range, and the condition that splits two. `text`: a formula in the grammar of effect files.
+//!
+//! Everything is pure and deterministic: results do not depend on the number of threads.
+
+mod answer;
+mod curve;
+mod enumeration;
+mod fit;
+mod limit;
+mod op;
+mod program;
+mod text;
+mod tree;
+mod unit;
+
+pub use answer::{Answer, FittedFormula, FormulaClass, WeighedFit, answer, fits, fitted, search};
+pub use curve::{CurveError, Host, LocatedCurve};
+pub use enumeration::FormulaLibrary;
+pub use fit::Link;
+pub use limit::{Limit, SplittingCondition, splitting};
+pub use op::Op;
+pub use program::ConstantRole;
+pub use text::{FormulaParameter, FormulaText, ParameterKind};
+pub use tree::Tree;

@@ -1,0 +1,50 @@
+//! Formulas as text.
+
+use equation::{FormulaText, Host, ParameterKind};
+use formula::expression::Expression;
+use formula::unit::Unit;
+
+use crate::setup::{answer, curve};
+
+#[test]
+fn a_formula_gives_the_law_that_was_fitted() {
+    for (host, quantity, neutral) in [(Host::Addition, "N", 0.0), (Host::Factor, "Pa", 1.0)] {
+        let curve = curve(host, 0.05, |x| 0.8 * x / (x + 0.3));
+        for formula in &answer(&curve).0.formulas[..200] {
+            let text = FormulaText::new(&curve, formula, "q", "x");
+            let unit = |kind: ParameterKind| match (kind, host) {
+                (ParameterKind::Strength, Host::Addition) => quantity,
+                (ParameterKind::Scale | ParameterKind::Shift | ParameterKind::Threshold, _) => "m",
+                _ => "1",
+            };
+            let parameters = text.parameters.iter().map(|p| (p.name.clone(), unit(p.kind)));
+            let names = [("q".to_owned(), quantity), ("x".to_owned(), "m")]
+                .into_iter()
+                .chain(parameters);
+            let names: Vec<(String, Unit)> = names
+                .map(|(name, unit)| (name, Unit::parse(unit).unwrap()))
+                .collect();
+            let read =
+                Expression::read(&text.formula, &names).unwrap_or_else(|e| panic!("{}: {e}", text.formula));
+            for at in [0.05, 0.4, 0.9] {
+                let mut values = vec![neutral, at];
+                values.extend(text.parameters.iter().map(|parameter| parameter.value));
+                let (found, expected) = (read.value(&values), formula.law(&curve, at));
+                assert!(
+                    (found - expected).abs() < 1e-9,
+                    "{} at {at}: {found}, {expected}",
+                    text.formula
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn values_stand_in_the_place_of_names() {
+    let curve = curve(Host::Addition, 0.01, |x| -3.0 * (1.0 - (-x / 0.22).exp()));
+    let (answer, _) = answer(&curve);
+    let text = FormulaText::new(&curve, &answer.formulas[0], "torque", "slip");
+    assert_eq!(text.formula, "torque + strength * (1 - exp(-slip / scale))");
+    assert_eq!(text.with_values(1), "torque - 3 * (1 - exp(-slip / 0.2))");
+}
