@@ -16,6 +16,8 @@
 //! - `scm`: one effect of the three-dimensional model on a coarse grid.
 //! - `ambiguous`: one effect at one load and one speed, and the number of further runs that identify it: proposed runs made one at a time
 //!   or two at once, random runs, and runs that fill the space of conditions.
+//! - `factorial`: one effect, and the number of runs that identify it: campaigns that begin with six runs and are continued by proposals or at
+//!   random, against the factorial of 24 runs of examples/hidden-effect.
 //! - `drift`: no effect, but the soil stiffens and the zero of the force sensor moves over the series, with the runs sorted by slip or in
 //!   random order, and `order` stated or not. `preparations`: no effect, but a soil preparation for each load and speed, with `prepared`
 //!   stated or not. `understated`: no effect, with noise 1.5 times larger than declared.
@@ -70,6 +72,7 @@ fn main() -> ExitCode {
     };
     let done = match arguments.first().map_or("one", String::as_str) {
         "ambiguous" => ambiguous::run(count, seed),
+        "factorial" => ambiguous::factorial::run(count, seed),
         "drift" => rig::run(&Flaw::DRIFTS, count, seed),
         "preparations" => rig::run(&[Flaw::Preparations], count, seed),
         "reference" => reference::run(count, seed),

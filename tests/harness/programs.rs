@@ -134,7 +134,7 @@ fn built() -> &'static Path {
             .parent()
             .expect("a profile's folder lies in the target folder");
         let mut build = Command::new(env!("CARGO"));
-        let words = "build --quiet -p coordinator -p worker --target-dir";
+        let words = "build --quiet -p coordinator -p worker -p fmu --target-dir";
         build.args(words.split(' ')).arg(target);
         if folder.ends_with("release") {
             build.arg("--release");

@@ -36,10 +36,22 @@ pub enum ExportError {
         /// The largest count of the format.
         max: u64,
     },
+    /// An archive cannot be written.
+    #[error("archive: {0}")]
+    Archive(String),
+    /// Project Chrono cannot express the model.
+    #[error("{0}")]
+    Chrono(String),
     /// Error of the Arrow library.
     #[error("arrow: {0}")]
     Arrow(#[from] arrow_schema::ArrowError),
     /// Error of the Parquet library.
     #[error("parquet: {0}")]
     Parquet(#[from] parquet::errors::ParquetError),
+}
+
+impl From<zip::result::ZipError> for ExportError {
+    fn from(error: zip::result::ZipError) -> Self {
+        ExportError::Archive(error.to_string())
+    }
 }

@@ -8,6 +8,7 @@
 //! - `content`: the content of an export, group by group.
 //! - `draw_table`: the draws of the posterior, one row each.
 //! - [`format`](mod@format): inference data as Zarr and NetCDF, the table as Arrow and Parquet.
+//! - [`simulator`]: the model for programs that simulate vehicles: a unit by FMI, files of Project Chrono, lookup tables.
 //! - `error`: the reasons for which nothing is written.
 
 mod content;
@@ -15,6 +16,7 @@ mod draw_table;
 mod error;
 pub mod format;
 mod inference_data;
+pub mod simulator;
 mod variable;
 
 pub use content::inference_data;

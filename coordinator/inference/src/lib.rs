@@ -68,6 +68,7 @@ pub use phase::EvaluationCount;
 pub use round::{Proposal, ProposalRound};
 pub use tell::{InferenceFailure, TellError, TellProgress};
 pub use tmcmc::{
-    Algorithm, MAX_PARTICLES, Particle, PosteriorSample, Sampler, StageMethod, StageProgress, StageRecord,
-    TmcmcSettings, TmcmcSettingsError,
+    Algorithm, MAX_PARTICLES, Particle, PosteriorSample, PosteriorUpdate, Sampler, StageMethod,
+    StageProgress, StageRecord, TmcmcSettings, TmcmcSettingsError, UpdateMethod, UpdateProgress,
+    UpdatedPosterior,
 };

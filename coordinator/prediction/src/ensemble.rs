@@ -275,7 +275,7 @@ fn thin(calibration: &mut FinishedCalibration, count: usize) {
 
 /// Returns the variant of a planned run alone. Soil and position in the series are those of the fitted runs; a drift is taken at the middle
 /// of the series.
-fn variant(
+pub(crate) fn variant(
     calibration: &FinishedCalibration,
     wheels: &BTreeMap<String, WheelGeometry>,
     planned: &PlannedRun,

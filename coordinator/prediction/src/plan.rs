@@ -29,7 +29,7 @@ const SWEPT: [&str; 6] = [
     "slope_deg",
 ];
 /// Largest number of planned runs.
-const MAX_RUNS: usize = 10_000;
+pub const MAX_RUNS: usize = 10_000;
 /// The name of a plan in messages.
 const FILE: &str = "plan.csv";
 
@@ -74,6 +74,16 @@ impl Sweep {
             name: name.to_owned(),
             values: (0..count).map(|i| from + i as f64 * step).collect(),
         })
+    }
+
+    /// Returns the name of the quantity.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Returns its values, in the order of the text.
+    pub fn values(&self) -> &[f64] {
+        &self.values
     }
 
     fn is_of_slip(&self) -> bool {

@@ -397,6 +397,9 @@ pub struct NextRun {
     pub separates: Vec<String>,
     /// Expected information on the explanations in addition to that of the runs before it in the list \[nats\].
     pub information_nats: f64,
+    /// Probability that the run, made alone, raises one of the explanations above 0.9; absent from older records.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub settles: Option<f64>,
 }
 
 /// The information of a test run when made alone.

@@ -75,6 +75,7 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
             sled_speed_m_s: condition.sled_speed_m_s,
             separates: run.separates.iter().map(words).collect(),
             information_nats: run.information_nats,
+            settles: Some(run.settles),
         })
     });
     let information = conclusion.information.iter().filter_map(|&(run, nats)| {

@@ -4,12 +4,17 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::{Context, bail};
-use export::{DrawTable, InferenceData, format};
+use export::simulator::LookupTable;
+use export::{DrawTable, InferenceData, format, simulator};
+use prediction::{Prediction, Sweep};
 use serde_json::json;
+use shared::api::NewPrediction;
+use shared::model::DrawnModel;
 
 use super::place::Place;
+use super::predict::stated;
 use super::verbs::write;
-use crate::config::{ExportArguments, ExportFormat};
+use crate::config::{ExportArguments, ExportFormat, beside_program};
 use report::StudySummary;
 use result::{Comparison, PosteriorTable};
 
@@ -44,6 +49,15 @@ pub(super) async fn export(config: &ExportArguments) -> anyhow::Result<()> {
         }
         ExportFormat::Netcdf => write_bytes(output, &format::netcdf(&data(&place, id).await?)?),
         ExportFormat::Zarr => write_folder(output, &format::zarr(&data(&place, id).await?)?),
+        ExportFormat::Table => write_bytes(output, &table(&place, id, config).await?),
+        ExportFormat::Fmu => {
+            let library = library()?;
+            write_bytes(
+                output,
+                &simulator::fmu(&model(&place, id, config).await?, &library)?,
+            )
+        }
+        ExportFormat::Chrono => write_folder(output, &simulator::chrono(&model(&place, id, config).await?)?),
     }
 }
 
@@ -56,6 +70,69 @@ async fn data(place: &Place, id: i64) -> anyhow::Result<InferenceData> {
     let data: InferenceData = place.get(&path(id, "inference-data")).await?;
     data.check()?;
     Ok(data)
+}
+
+/// Reads the model with its draws.
+async fn model(place: &Place, id: i64, config: &ExportArguments) -> anyhow::Result<DrawnModel> {
+    let query: Vec<String> = stated(&config.at)?
+        .iter()
+        .map(|(name, value)| format!("{name}={}", url_encoded(value)))
+        .collect();
+    let separator = if query.is_empty() { "" } else { "?" };
+    let path = path(id, "drawn-model") + separator + &query.join("&");
+    place.get(&path).await
+}
+
+/// Returns a text with everything but letters, digits and `-._~` as bytes in hex.
+fn url_encoded(text: &str) -> String {
+    let byte = |byte: u8| match byte {
+        b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' => char::from(byte).to_string(),
+        other => format!("%{other:02X}"),
+    };
+    text.bytes().map(byte).collect()
+}
+
+/// Reads the library that is built with the program: beside it, or in `../lib/grouser` where a package puts it.
+fn library() -> anyhow::Result<Vec<u8>> {
+    let places = beside_program(simulator::LIBRARY)?;
+    if let Some(place) = places.iter().find(|place| place.exists()) {
+        return std::fs::read(place).with_context(|| place.display().to_string());
+    }
+    bail!(
+        "{} is missing: it computes the model in a simulator, and is built with the program (cargo build --release); a package has it as {}",
+        places[0].display(),
+        places[1].display()
+    )
+}
+
+/// Predicts the grid of a table and returns its file, by the suffix of the output's name.
+async fn table(place: &Place, id: i64, config: &ExportArguments) -> anyhow::Result<Vec<u8>> {
+    if config.grid.is_empty() {
+        bail!(
+            "--grid is missing: state the values of the table, as in --grid slip=0:0.6:13 --grid wheel_load_n=50:150:5"
+        );
+    }
+    let suffix = needed(config.output.as_deref())?.extension();
+    let is_csv = match suffix.and_then(|suffix| suffix.to_str()) {
+        Some("csv") => true,
+        Some("npz") => false,
+        _ => bail!("the name of a table must end with .csv or .npz"),
+    };
+    let grid: Vec<Sweep> = config
+        .grid
+        .iter()
+        .map(|text| Sweep::read(text))
+        .collect::<Result<_, _>>()?;
+    let asked = NewPrediction {
+        plan: Some(LookupTable::plan(&grid, &stated(&config.at)?)?),
+        ..NewPrediction::default()
+    };
+    let predicted: Prediction = place.post(&path(id, "predict"), &asked).await?;
+    let table = LookupTable::new(&grid, &predicted)?;
+    Ok(match is_csv {
+        true => table.csv().into_bytes(),
+        false => table.npz()?,
+    })
 }
 
 fn needed(output: Option<&Path>) -> anyhow::Result<&Path> {
@@ -72,7 +149,7 @@ fn write_folder(output: Option<&Path>, files: &BTreeMap<String, Vec<u8>>) -> any
     let folder = needed(output)?;
     if folder.exists() {
         bail!(
-            "{} exists already; zarr needs a new folder, because what an older one holds would be read too",
+            "{} exists already; a new folder is needed, because what an older one holds would be read too",
             folder.display()
         );
     }
@@ -83,4 +160,15 @@ fn write_folder(output: Option<&Path>, files: &BTreeMap<String, Vec<u8>>) -> any
         std::fs::write(&file, bytes).with_context(|| file.display().to_string())?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_in_a_query_are_encoded() {
+        assert_eq!(url_encoded("wide wheel&x=1"), "wide%20wheel%26x%3D1");
+        assert_eq!(url_encoded("ä-0.5"), "%C3%A4-0.5");
+    }
 }

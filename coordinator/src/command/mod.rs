@@ -24,6 +24,7 @@ mod shutdown;
 mod token;
 mod validate;
 mod verbs;
+mod watch;
 
 use crate::config::CoordinatorCommand;
 
@@ -52,6 +53,7 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
         CoordinatorCommand::Validate(config) => validate::validate(&config).await,
         CoordinatorCommand::Predict(config) => predict::predict(&config).await,
         CoordinatorCommand::Decide(config) => predict::decide(&config).await,
+        CoordinatorCommand::Watch(config) => watch::watch(&config).await,
         CoordinatorCommand::Discover(discover) => growth::discover(&discover).await,
         CoordinatorCommand::Extend(extend) => growth::extend(&extend).await,
         CoordinatorCommand::AddRuns(runs) => growth::add_runs(&runs).await,

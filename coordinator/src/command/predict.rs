@@ -60,7 +60,7 @@ fn json(value: &impl Serialize) -> anyhow::Result<String> {
 }
 
 /// Returns the calibration that is meant: the given one, or that of the current model of the only study.
-async fn target(place: &Place, id: Option<i64>) -> anyhow::Result<i64> {
+pub(super) async fn target(place: &Place, id: Option<i64>) -> anyhow::Result<i64> {
     if let Some(id) = id {
         return Ok(id);
     }
@@ -74,15 +74,18 @@ async fn target(place: &Place, id: Option<i64>) -> anyhow::Result<i64> {
     }
 }
 
+/// Returns the names and values of arguments of the form NAME=VALUE.
+pub(super) fn stated(values: &[String]) -> anyhow::Result<Vec<(&str, &str)>> {
+    let parts = values.iter().map(|value| {
+        let parts = value.split_once('=');
+        parts.with_context(|| format!("--at {value} must have the form NAME=VALUE"))
+    });
+    parts.collect()
+}
+
 /// Returns a plan with one row of these values; `None` without values.
 fn row(values: &[String]) -> anyhow::Result<Option<String>> {
-    let parts: Vec<(&str, &str)> = values
-        .iter()
-        .map(|value| {
-            let parts = value.split_once('=');
-            parts.with_context(|| format!("--at {value} must have the form NAME=VALUE"))
-        })
-        .collect::<Result<_, _>>()?;
+    let parts = stated(values)?;
     let line = |part: fn(&(&str, &str)) -> String| parts.iter().map(part).collect::<Vec<_>>().join(",");
     let (names, values) = (line(|part| part.0.to_owned()), line(|part| part.1.to_owned()));
     Ok((!parts.is_empty()).then(|| format!("{names}\n{values}\n")))

@@ -2,12 +2,14 @@
 //!
 //! # Layout
 //! - `client`: what a service asks for.
+//! - `library`: where libraries that belong to the program lie.
 //! - `model`: models that are not ours. `target`: which calibration, and where.
-//! - `predict`: arguments of `coordinator predict` and `coordinator decide`.
+//! - `predict`: arguments of `coordinator predict`, `decide` and `watch`.
 //! - `scale`, `validate`: arguments of `coordinator scale` and `coordinator validate`.
 //! - `store`: where a store is kept, copies of it, its tokens.
 
 mod client;
+mod library;
 mod model;
 mod predict;
 mod scale;
@@ -24,8 +26,9 @@ use crate::embedded::WorkerConfig;
 use crate::schema::FileKind;
 
 pub use client::ClientArguments;
+pub use library::beside_program;
 pub use model::ModelArguments;
-pub use predict::{DecideArguments, PredictArguments, PredictionFormat};
+pub use predict::{DecideArguments, PredictArguments, PredictionFormat, WatchArguments};
 pub use scale::{EngineKind, ScaleArguments};
 pub use store::{BackupArguments, CopyStoreArguments, StoreArguments, TokenCommand};
 pub use target::{SourceArguments, TargetArguments};
@@ -70,7 +73,7 @@ pub enum CoordinatorCommand {
     Compare(TargetArguments),
     /// Write the report of a calibration.
     Report(ReportArguments),
-    /// Write a calibration for other programs: csv, json, arrow, parquet, zarr, netcdf.
+    /// Write a calibration for other programs: csv, json, arrow, parquet, zarr, netcdf, table, fmu, chrono.
     Export(ExportArguments),
     /// Show how reliable a calibration is and where its model fails.
     Diagnose(TargetArguments),
@@ -80,6 +83,8 @@ pub enum CoordinatorCommand {
     Predict(PredictArguments),
     /// Compare options by their expected losses, and say what one more run is worth.
     Decide(DecideArguments),
+    /// Follow a campaign: after each run of a file, the posterior, what is missing, and the run to make next.
+    Watch(WatchArguments),
     /// Search for an effect that the model of a calibration is missing.
     Discover(DiscoverArguments),
     /// Extend a study by a calibration with one additional effect.
@@ -395,9 +400,15 @@ pub struct ExportArguments {
     /// Format of the exported file.
     #[arg(long, value_enum, default_value_t = ExportFormat::Csv)]
     pub format: ExportFormat,
-    /// Output file, of zarr a new folder; by default, standard output for csv and json.
+    /// Output file, of zarr and chrono a new folder; by default, standard output for csv and json.
     #[arg(long)]
     pub output: Option<PathBuf>,
+    /// Of a table, the values of one quantity of its grid; repeat it for each quantity.
+    #[arg(long, value_name = "NAME=FROM:TO:COUNT")]
+    pub grid: Vec<String>,
+    /// Of table, fmu and chrono, a quantity of the condition; by default, the medians of the fitted runs.
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub at: Vec<String>,
 }
 
 /// Format of an export.
@@ -415,6 +426,12 @@ pub enum ExportFormat {
     Zarr,
     /// The same as one file, NetCDF 3.
     Netcdf,
+    /// Predictions over a grid with intervals: a file .csv, or .npz for NumPy.
+    Table,
+    /// The calibrated wheel as a co-simulation unit by FMI 3.0.
+    Fmu,
+    /// Soil, terrain and single-wheel rig as a folder for Project Chrono.
+    Chrono,
 }
 
 /// Search for an effect that the model of a calibration is missing.

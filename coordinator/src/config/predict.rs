@@ -52,6 +52,20 @@ pub struct DecideArguments {
     pub format: PredictionFormat,
 }
 
+/// Follow the runs of a file.
+#[derive(Debug, Args)]
+pub struct WatchArguments {
+    /// CSV file with the columns of `runs.csv`; rows of runs that the calibration has already are passed over.
+    pub runs: PathBuf,
+    /// Id of the calibration; by default, the current model of the only study.
+    pub id: Option<i64>,
+    #[command(flatten)]
+    pub source: SourceArguments,
+    /// Ends after the rows that the file has now.
+    #[arg(long)]
+    pub once: bool,
+}
+
 /// Form in which predictions and decisions are printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum PredictionFormat {

@@ -29,6 +29,7 @@ fn limit(path: &str) -> usize {
         Some("experiments") => 64 << 20,
         Some("import" | "guess") => 32 << 20,
         Some("calibrations" | "runs") => 16 << 20,
+        Some("follow") => 16 << 20,
         Some("extend" | "what-if" | "predict" | "decide") => 1 << 20,
         _ => 64 << 10,
     }

@@ -47,16 +47,16 @@ pub(super) async fn pass(
     Ok(answering.through(next.run(request).await))
 }
 
-/// Returns whether a request changes nothing in the store: it reads, or it asks for a prediction or a decision.
+/// Returns whether a request changes nothing in the store: it reads, or it asks what follows from a calibration.
 fn changes_nothing(method: &Method, path: &str) -> bool {
     [Method::GET, Method::HEAD].contains(method) || method == Method::POST && asks_of_a_calibration(path)
 }
 
-/// Returns whether a path is `/v1/calibrations/ID/predict` or `/v1/calibrations/ID/decide`.
+/// Returns whether a path is `/v1/calibrations/ID/` and `predict`, `decide` or `follow`.
 fn asks_of_a_calibration(path: &str) -> bool {
     let rest = path.strip_prefix("/v1/calibrations/");
     let parts = rest.and_then(|rest| rest.split_once('/'));
-    parts.is_some_and(|(id, verb)| !id.is_empty() && ["predict", "decide"].contains(&verb))
+    parts.is_some_and(|(id, verb)| !id.is_empty() && ["predict", "decide", "follow"].contains(&verb))
 }
 
 #[cfg(test)]
@@ -69,6 +69,7 @@ mod tests {
             (Method::GET, "/v1/studies", true),
             (Method::POST, "/v1/calibrations/3/predict", true),
             (Method::POST, "/v1/calibrations/3/decide", true),
+            (Method::POST, "/v1/calibrations/3/follow", true),
             (Method::DELETE, "/v1/calibrations/3/predict", false),
             (Method::POST, "/v1/calibrations/3/cancel", false),
             (Method::PUT, "/v1/effects/predict", false),

@@ -2,18 +2,24 @@
 
 use axum::Json;
 use axum::extract::State;
-use prediction::{DecisionAnswer, Prediction};
-use shared::api::{ErrorBody, NewDecision, NewPrediction};
+use job::PlannedCondition;
+use prediction::follow::Followed;
+use prediction::{DecisionAnswer, Prediction, drawn_model};
+use shared::api::{ErrorBody, NewDecision, NewPrediction, NewRuns};
+use shared::model::DrawnModel;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-use super::error::{Body, HttpError, Id};
+use super::error::{Body, HttpError, Id, Query};
 use crate::service::Service;
+use crate::service::ServiceError;
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
     OpenApiRouter::new()
         .routes(routes!(predict))
         .routes(routes!(decide))
+        .routes(routes!(drawn))
+        .routes(routes!(follow))
 }
 
 /// Predicts conditions of one's own.
@@ -53,4 +59,55 @@ async fn decide(
     Body(asked): Body<NewDecision>,
 ) -> Result<Json<DecisionAnswer>, HttpError> {
     Ok(Json(service.decide(id, asked).await?))
+}
+
+/// The model with its draws.
+///
+/// What another program needs to simulate the calibrated model: the model with one condition, which it replaces by its own, and the
+/// parameters at each draw that predictions use. What the query leaves out of the condition is the median of the fitted runs. 422 of a model
+/// that is not ours.
+#[utoipa::path(get, path = "/calibrations/{id}/drawn-model", operation_id = "get_drawn_model", tag = "results",
+    params(
+        ("id" = i64, Path),
+        ("wheel" = Option<String>, Query, description = "wheel, if the fitted runs have several"),
+        ("slip" = Option<f64>, Query, description = "slip"),
+        ("wheel_load_n" = Option<f64>, Query, description = "load in N"),
+        ("sled_speed_m_s" = Option<f64>, Query, description = "speed of travel in m/s"),
+        ("slip_angle_deg" = Option<f64>, Query, description = "from wheel heading to travel in deg"),
+        ("pass" = Option<u32>, Query, description = "number of the pass"),
+        ("gravity_m_s2" = Option<f64>, Query, description = "acceleration of gravity in m/s^2"),
+    ), responses(
+    (status = 200, description = "the model with its draws", body = DrawnModel),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody, description = "the calibration is not finished, or has no draws"),
+    (status = 422, body = ErrorBody, description = "the condition is malformed"),
+))]
+async fn drawn(
+    State(service): State<Service>,
+    Id(id): Id,
+    Query(stated): Query<PlannedCondition>,
+) -> Result<Json<DrawnModel>, HttpError> {
+    let calibration = service.finished_calibration(id).await?;
+    let model = drawn_model(&calibration, &stated).map_err(ServiceError::from)?;
+    Ok(Json(model))
+}
+
+/// What further runs change.
+///
+/// Posterior, weights of the models and verdict of a search with further runs, by the draws so far: weighted anew, or by a few stages of new
+/// ones. The answer has the runs to make next, the probability that the first settles what is missing, and which run contradicts all others.
+/// Nothing is stored; `POST /v1/studies/ID/runs` adds runs for good.
+#[utoipa::path(post, path = "/calibrations/{id}/follow", operation_id = "follow", tag = "results",
+    params(("id" = i64, Path, description = "id of a calibration with a posterior")), request_body = NewRuns, responses(
+    (status = 200, description = "the campaign with all runs", body = Followed),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody, description = "the calibration is not finished, has no draws, or its model cannot be evaluated here"),
+    (status = 422, body = ErrorBody, description = "a row is malformed, or its run exists already"),
+))]
+async fn follow(
+    State(service): State<Service>,
+    Id(id): Id,
+    Body(asked): Body<NewRuns>,
+) -> Result<Json<Followed>, HttpError> {
+    Ok(Json(service.follow(id, asked).await?))
 }

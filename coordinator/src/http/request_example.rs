@@ -75,7 +75,7 @@ pub(super) fn request_example(operation: &str) -> Option<Value> {
         "create_what_if" => json!({"without": ["r00", "r01"]}),
         "predict" => json!({"sweep": "slip=0.05:0.6:12", "statements": ["drawbar_pull_n > 12"]}),
         "decide" => json!({ "file": DECISION }),
-        "add_runs" => json!({ "runs": FURTHER_RUNS }),
+        "add_runs" | "follow" => json!({ "runs": FURTHER_RUNS }),
         "add_effect" => json!({ "text": EFFECT }),
         "import_table" => json!({"name": "sand.csv", "content_base64": TABLE_BASE64, "map": MAP}),
         "guess_import_map" => json!({"name": "sand.csv", "content_base64": TABLE_BASE64, "sheet": null}),

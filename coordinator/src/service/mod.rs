@@ -12,6 +12,7 @@
 //! - `stored_calibration`, `study_step`, `finished_study`: values that are read from the store.
 //! - `study_members`: the members of a study.
 //! - `results`: the texts about studies and calibrations, kept in the `result_cache`. `study_overview`: studies for the page.
+//! - `follow`: further runs of a campaign while it lasts.
 //! - `predictions`: conditions of one's own and decisions; `simulation`: their simulations in this process.
 //! - `study_changes`: notifications of changes of studies.
 
@@ -21,6 +22,7 @@ mod effects;
 mod error;
 mod farm_settings;
 mod finished_study;
+mod follow;
 mod growth;
 mod handle;
 mod predictions;

@@ -52,7 +52,7 @@ impl Service {
     }
 
     /// Computes from the study of a calibration outside the threads of the runtime, one at a time.
-    async fn alone<T: Send + 'static>(
+    pub(super) async fn alone<T: Send + 'static>(
         &self,
         id: i64,
         compute: impl FnOnce(Study) -> Result<T, PredictionError> + Send + 'static,

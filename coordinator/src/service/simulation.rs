@@ -16,24 +16,40 @@ const CHUNK: usize = 32;
 /// A sentence: the model cannot be evaluated here.
 pub(super) fn simulate(question: &Question) -> Result<Answers, String> {
     let chunks = question.thetas.len().div_ceil(CHUNK).max(1);
-    let pieces = question.variants.len() * chunks;
+    let done = in_parallel(question.variants.len() * chunks, |piece| {
+        evaluate(question, piece / chunks, piece % chunks)
+    })?;
+    let mut answers: Answers = question.variants.iter().map(|_| Vec::new()).collect();
+    for (piece, answer) in done.into_iter().enumerate() {
+        answers[piece / chunks].extend(answer?);
+    }
+    Ok(answers)
+}
+
+/// Returns the results of numbered pieces of work on all cores, in their order.
+///
+/// # Errors
+/// A sentence: a piece panicked.
+pub(super) fn in_parallel<T: Send>(
+    pieces: usize,
+    work: impl Fn(usize) -> T + Sync,
+) -> Result<Vec<T>, String> {
     let next = AtomicUsize::new(0);
-    let work = || {
+    let share = || {
         let mut done = Vec::new();
         loop {
             let piece = next.fetch_add(1, Ordering::Relaxed);
             if piece >= pieces {
                 return done;
             }
-            let (variant, chunk) = (piece / chunks, piece % chunks);
-            done.push((piece, evaluate(question, variant, chunk)));
+            done.push((piece, work(piece)));
         }
     };
     let threads = std::thread::available_parallelism()
         .map_or(1, usize::from)
         .min(pieces);
     let parts = std::thread::scope(|scope| {
-        let started: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        let started: Vec<_> = (0..threads).map(|_| scope.spawn(share)).collect();
         started
             .into_iter()
             .map(|thread| thread.join())
@@ -44,11 +60,7 @@ pub(super) fn simulate(question: &Question) -> Result<Answers, String> {
         done.extend(part.map_err(|_| "the simulation of a planned run ended unexpectedly".to_owned())?);
     }
     done.sort_by_key(|(piece, _)| *piece);
-    let mut answers: Answers = question.variants.iter().map(|_| Vec::new()).collect();
-    for (piece, answer) in done {
-        answers[piece / chunks].extend(answer?);
-    }
-    Ok(answers)
+    Ok(done.into_iter().map(|(_, result)| result).collect())
 }
 
 /// Simulates a variant at a chunk of the parameter vectors.

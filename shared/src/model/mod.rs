@@ -10,10 +10,12 @@
 //! - `names`: the meaning of parameter names, and the check that a set of them is complete.
 //! - `variant`: [`ModelVariant`], with the runs and readings (`condition`) to simulate; `capability`: the check that its
 //!   model can express it.
+//! - `drawn`: a calibrated model with its draws, for other programs.
 //! - `low_fidelity`: the quasi-static variant of a three-dimensional one.
 
 mod capability;
 mod condition;
+mod drawn;
 pub mod effects;
 mod error;
 mod external;
@@ -29,6 +31,7 @@ pub mod spatial;
 mod variant;
 
 pub use condition::{PlateCondition, RingCondition, RunCondition};
+pub use drawn::DrawnModel;
 pub use effects::{EffectSet, EffectText};
 pub use error::ModelError;
 pub use external::{ExternalModel, ExternalParameter, ExternalSource, RunInput};

@@ -16,6 +16,8 @@ use crate::hidden_effect::study::record::word;
 
 /// The number of the first truth, which no other kind uses.
 const FIRST: u64 = 1_000_000;
+/// The number of the first truth of the factorial.
+const FACTORIAL: u64 = 2_000_000;
 /// The random stream of the noise of further runs.
 const STAGE: u64 = 1 << 45;
 /// The first random stream of orders of runs.
@@ -43,6 +45,39 @@ impl Campaign {
     pub fn new(seed: u64, number: u64) -> Result<Self, StudyError> {
         let case = draw_detectable(Plan::Narrow, 1, seed, FIRST + number)?;
         Ok(Self { case, seed, number })
+    }
+
+    /// Draws an effect that the 24 runs of the factorial can show, and measures these.
+    pub fn factorial(seed: u64, number: u64) -> Result<Self, StudyError> {
+        let case = draw_detectable(Plan::Factorial, 1, seed, FACTORIAL + number)?;
+        Ok(Self { case, seed, number })
+    }
+
+    /// Returns the campaign with those runs of the factorial alone that a campaign begins with: three slips, two loads, one speed.
+    pub fn first_runs(&self) -> Self {
+        let is_first = |row: &PlannedRun| {
+            let rim = row.sled_speed_m_s / (1.0 - row.slip);
+            (rim - 0.03).abs() < 1e-9 && (row.slip - 0.4).abs() > 1e-9
+        };
+        let mut first = self.clone();
+        let case = &mut first.case;
+        let kept: Vec<usize> = (0..case.rows.len())
+            .filter(|&i| is_first(&case.rows[i]))
+            .collect();
+        case.rows = kept.iter().map(|&i| self.case.rows[i].clone()).collect();
+        case.noise_free = kept.iter().map(|&i| self.case.noise_free[i]).collect();
+        case.measured = kept.iter().map(|&i| self.case.measured[i]).collect();
+        first
+    }
+
+    /// Makes the first of these runs that the model does not reject; returns `false` if it rejects all.
+    pub fn make_one(&mut self, order: &[RunCondition]) -> Result<bool, StudyError> {
+        for condition in order {
+            if self.measure(condition)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     pub fn hidden(&self) -> &str {

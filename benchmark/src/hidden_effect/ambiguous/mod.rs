@@ -2,9 +2,11 @@
 //!
 //! # Layout
 //! - `campaign`: an experiment that gets further runs. `strategy`: the choice of the runs; `space`: the conditions that a rig can set.
+//! - `factorial`: campaigns that begin with six runs, against the factorial of 24.
 //! - `story`: one campaign, continued by one strategy.
 
 pub mod campaign;
+pub mod factorial;
 pub mod space;
 pub mod story;
 pub mod strategy;

@@ -28,6 +28,8 @@ pub enum Plan {
     Fixed,
     /// Eight runs: four slips and two loads, with the speed of the rim alternating between two.
     Sparse,
+    /// Four slips, two loads, three speeds of the rim: the factorial of examples/hidden-effect.
+    Factorial,
     /// Six slips at one load and one speed, which leave many effects ambiguous.
     Narrow,
     /// Four slips, two loads, two speeds of a wheel that rolls in three dimensions on a coarse grid.
@@ -70,13 +72,14 @@ impl Plan {
                 [&[0.05, 0.1, 0.2, 0.3, 0.45, 0.6], &[60.0, 120.0], &[0.01, 0.05]]
             }
             Plan::Sparse => [&[0.05, 0.2, 0.4, 0.6], &[60.0, 120.0], &[0.01, 0.05]],
+            Plan::Factorial => [&[0.05, 0.2, 0.4, 0.6], &[60.0, 120.0], &[0.01, 0.03, 0.08]],
             Plan::Narrow => [&[0.05, 0.1, 0.2, 0.3, 0.45, 0.6], &[90.0], &[0.03]],
             Plan::Rolling => [&[0.05, 0.1, 0.2, 0.3, 0.4, 0.5], &[60.0, 120.0], &[0.01, 0.05]],
             Plan::Spatial => [&[0.05, 0.15, 0.3, 0.5], &[60.0, 120.0], &[0.01, 0.05]],
         };
         let mut rows = self.grid([slips, loads, rims], false);
         rows.extend(match self {
-            Plan::Narrow => Vec::new(),
+            Plan::Narrow | Plan::Factorial => Vec::new(),
             Plan::Spatial | Plan::Rolling => self.grid([&[0.1, 0.4], &[85.0], &[0.02, 0.06]], true),
             _ => self.grid([&[0.07, 0.15, 0.38, 0.66], &[85.0, 132.0], &[0.02, 0.06]], true),
         });

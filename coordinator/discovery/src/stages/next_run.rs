@@ -29,6 +29,8 @@ pub struct InformativeRun {
     pub run: usize,
     /// Expected information on the explanations in addition to that of the runs before it \[nats\].
     pub information_nats: f64,
+    /// Probability that the run, made alone, raises one of the explanations above 0.9.
+    pub settles: f64,
     /// The most probable explanation and those that the run distinguishes from it: combinations of candidates, empty for the base.
     pub separates: Vec<Vec<usize>>,
 }
@@ -216,6 +218,7 @@ impl RunSelection {
             runs.push(InformativeRun {
                 run,
                 information_nats: gain,
+                settles: predictive.settles(run),
                 separates: separated.map(|k| hypotheses[k].effects.clone()).collect(),
             });
         }

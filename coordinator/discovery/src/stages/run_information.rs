@@ -9,6 +9,8 @@ use statistics::rng::Stream;
 const OUTCOMES: usize = 200;
 /// A run distinguishes two explanations whose predictions differ by more standard deviations than this.
 const APART: f64 = 2.0;
+/// Probability above which an explanation is claimed.
+const SETTLED: f64 = 0.9;
 /// Random streams of the outcomes, beside those of the posterior draws.
 const STAGE: u64 = (1 << 43) + 1;
 
@@ -106,6 +108,37 @@ impl<'a> Predictive<'a> {
         Some(nats)
     }
 
+    /// Returns the probability that a run raises one explanation above [`SETTLED`], over the same outcomes as the information; 0 where a
+    /// covariance is not positive definite.
+    ///
+    /// Checked by `tests::a_run_settles_what_it_tells_apart`.
+    pub(super) fn settles(&self, run: usize) -> f64 {
+        let normals: Option<Vec<JointNormal>> = self
+            .predictions
+            .iter()
+            .map(|(_, prediction)| self.normal(prediction, &[run]))
+            .collect();
+        let Some(normals) = normals else {
+            return 0.0;
+        };
+        let mut probability = 0.0;
+        for (m, normal) in normals.iter().enumerate() {
+            let is_settled = |z: &&Vec<f64>| {
+                let outcome =
+                    &normal.mean + &normal.factor * DVector::from_column_slice(&z[..normal.mean.len()]);
+                let all = normals.iter().zip(&self.predictions);
+                let all: Vec<f64> = all
+                    .map(|(normal, (share, _))| libm::log(*share) + normal.log_density(&outcome))
+                    .collect();
+                let highest = all.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                highest - log_sum_exp(all.into_iter()) > libm::log(SETTLED)
+            };
+            let settled = self.normals[m].iter().filter(is_settled).count();
+            probability += self.predictions[m].0 * settled as f64 / OUTCOMES as f64;
+        }
+        probability
+    }
+
     /// Returns the most probable explanation and those that a run distinguishes from it; all others if it distinguishes none.
     pub(super) fn separated(&self, run: usize) -> Vec<usize> {
         let normals: Option<Vec<JointNormal>> = self
@@ -180,6 +213,17 @@ mod tests {
         let far = prediction([30.0, 0.0, 0.0], &[[1.0; 3]]);
         assert!((information([&near, &far], &[0]) - std::f64::consts::LN_2).abs() < 1e-6);
         assert!(information([&near, &far], &[1]).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_run_settles_what_it_tells_apart() {
+        let [a, b] = [[0.0; 3], [30.0, 0.0, 1.0]].map(|mean| prediction(mean, &[]));
+        let predictive = Predictive::new(vec![(0.5, &a), (0.5, &b)], &[1.0], 1, 1);
+        assert!((predictive.settles(0) - 1.0).abs() < 1e-12);
+        assert!(predictive.settles(1) < 1e-12);
+        // The odds exceed 9 where y - 1/2 is beyond ln 9: with a probability of (1 - Phi(2.70) + 1 - Phi(1.70)).
+        let share = predictive.settles(2);
+        assert!((share - 0.048).abs() < 0.04, "{share}");
     }
 
     #[test]

@@ -109,7 +109,7 @@ impl Calibration {
             .to_vec();
         let is_scored = self.phase.is_sampling() && self.engine.discovery().is_none();
         let log_likelihood = match is_scored {
-            true => Some(self.score(&outcome, &theta)?),
+            true => Some(self.spec.log_likelihood(outcome.as_ref().ok(), &theta)?),
             false => None,
         };
         Ok(EvaluationRow {
@@ -123,23 +123,6 @@ impl Calibration {
     }
 
     /// Returns the log-likelihood of an outcome.
-    fn score(
-        &self,
-        outcome: &Result<Observables, RejectionReason>,
-        theta: &[f64],
-    ) -> Result<LogLikelihood, LikelihoodError> {
-        let Ok(observables) = outcome else {
-            return Ok(LogLikelihood::Impossible);
-        };
-        let values = self.spec.predicted_values(observables);
-        match self.spec.likelihood.log_likelihood(&values, theta) {
-            // A draw from the tail of a prior may have a standard deviation of zero. This is a property of theta, not an error of the
-            // model.
-            Err(LikelihoodError::Noise { .. }) => Ok(LogLikelihood::Impossible),
-            scored => scored,
-        }
-    }
-
     fn kept(&self, evaluation: u64, outcome: Result<Observables, RejectionReason>) -> Kept {
         let searched = |observables: &Observables| {
             let particle = self.proposal(evaluation)?.particle;

@@ -55,7 +55,7 @@ pub use verification::{Verification, VerificationRule};
 pub use witness::Witness;
 
 /// The largest number of effects that a search looks for together.
-const MAX_EFFECTS_TOGETHER: usize = 3;
+pub const MAX_EFFECTS_TOGETHER: usize = 3;
 
 /// The place of a calibration in the store.
 #[derive(Debug, Clone)]

@@ -22,6 +22,7 @@
 //! - `transition`: from the pool of a stage to the chains of the next.
 //! - `draws`, `draw_sequence`: stages of independent draws. `stage`, `scale`: the moves of the chains. `proposal_mixture`,
 //!   `covariance`: the candidates of a move. `equilibrium`: when the moves end.
+//! - `update`: the posterior after more data.
 //! - `evidence`: the log-evidence and its standard error.
 //!
 //! # Source
@@ -43,8 +44,10 @@ mod settings;
 mod stage;
 mod stage_sequence;
 pub(crate) mod transition;
+mod update;
 
 pub use particle::Particle;
 pub use record::{PosteriorSample, StageProgress, StageRecord};
 pub use sampler::Sampler;
 pub use settings::{Algorithm, MAX_PARTICLES, StageMethod, TmcmcSettings, TmcmcSettingsError};
+pub use update::{PosteriorUpdate, UpdateMethod, UpdateProgress, UpdatedPosterior};

@@ -19,7 +19,7 @@ use shared::file::{FileError, FileSet};
 use shared::model::{ModelSettings, ModelVariant, equations_of};
 use shared::outcome::Observables;
 use shared::predicted::PredictedValue;
-use statistics::{Discrepancy, Likelihood, Prior};
+use statistics::{Discrepancy, Likelihood, LikelihoodError, LogLikelihood, Prior};
 
 use crate::data::bevameter_readings::{BevameterReadings, PLATE};
 use crate::data::error::DataError;
@@ -216,6 +216,27 @@ impl Spec {
             .iter()
             .map(|value| value.select(observables))
             .collect()
+    }
+
+    /// Returns ln p(data | theta) of an evaluation of the fitted runs; where the model rejected the parameters, the data are impossible.
+    ///
+    /// # Errors
+    /// [`LikelihoodError`]: the predicted values do not fit the likelihood.
+    pub fn log_likelihood(
+        &self,
+        observables: Option<&Observables>,
+        theta: &[f64],
+    ) -> Result<LogLikelihood, LikelihoodError> {
+        let Some(observables) = observables else {
+            return Ok(LogLikelihood::Impossible);
+        };
+        let values = self.predicted_values(observables);
+        match self.likelihood.log_likelihood(&values, theta) {
+            // A draw from the tail of a prior may have a standard deviation of zero. This is a property of theta, not an error of the
+            // model.
+            Err(LikelihoodError::Noise { .. }) => Ok(LogLikelihood::Impossible),
+            scored => scored,
+        }
     }
 
     /// Returns the number of preparations of the soil of the fitted runs; each run without an id counts as one.

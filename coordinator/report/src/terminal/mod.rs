@@ -6,6 +6,7 @@
 //! - `brief`: a study in a few lines; `story`: what is wrong, what is missing, what next; `ending`: where the files are.
 //! - `study`: the complete text of a study; `models`: its compared models; `ledger`: the errors of its calibrations.
 //! - `calibration`: one calibration; `comparison`: its rows and errors; `diagnostics`: its diagnostics.
+//! - `followed`: a campaign that is followed.
 //! - `prediction`: conditions of one's own; `decision`: options by their expected losses.
 //! - `rig`: offsets of sessions, tarings and operators.
 //! - [`discovery`]: a search for a missing effect. `validation`: the levels of a factor, each left out in turn.
@@ -20,6 +21,7 @@ mod decision;
 mod diagnostics;
 pub mod discovery;
 mod ending;
+mod followed;
 mod ledger;
 mod list;
 mod models;
@@ -37,6 +39,7 @@ pub use comparison::{comparison, groups};
 pub use decision::decision;
 pub use diagnostics::diagnostics;
 pub use ending::ending;
+pub use followed::followed;
 pub use list::list;
 pub use prediction::{prediction, prediction_csv};
 pub use rig::rig;

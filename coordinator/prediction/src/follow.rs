@@ -1,0 +1,183 @@
+//! What further runs change: the answer to a campaign that is followed.
+
+use inference::{UpdateMethod, UpdatedPosterior};
+use job::Spec;
+use record::{Discovery, NextRun, Verdict};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+use crate::spread::{interval, mean, variance};
+use crate::surprise::Expectation;
+
+/// A campaign with further runs that are not stored.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Followed {
+    /// Id of the calibration that is followed.
+    pub calibration: i64,
+    /// Names of the further runs.
+    pub runs: Vec<String>,
+    /// Their measurements beside what the runs before them made probable.
+    pub expectations: Vec<Expectation>,
+    /// The models of the study with all runs, that of the calibration first.
+    pub models: Vec<FollowedModel>,
+    /// The parameters of the calibration with all runs; empty if it must be calibrated again.
+    pub parameters: Vec<FollowedParameter>,
+    /// What a search of the calibration's model finds in all runs, as a sentence.
+    pub verdict: String,
+    /// The runs to make next, the most informative first.
+    pub next_runs: Vec<NextRun>,
+    /// Why no further run is needed or would help; null while one does.
+    pub stop: Option<String>,
+}
+
+/// A model of the study with all runs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FollowedModel {
+    /// Id of the model's calibration.
+    pub calibration: i64,
+    /// Kind of the model, with its effects.
+    pub name: String,
+    /// Its posterior probability among the models before the further runs, from equal prior probabilities.
+    pub weight_before: f64,
+    /// The same with all runs; null if a model must be calibrated again.
+    pub weight: Option<f64>,
+    /// Log-evidence of all runs; null if it must be calibrated again.
+    pub log_evidence: Option<f64>,
+    /// `reweighted`, `drawn`, or `calibrate again`: too few draws of the posterior so far agree with all runs.
+    pub method: String,
+    /// Number of independent draws that the posterior is worth.
+    pub ess: Option<f64>,
+}
+
+/// A parameter with all runs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FollowedParameter {
+    /// Name.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// Posterior mean.
+    pub mean: f64,
+    /// Posterior standard deviation.
+    pub sd: f64,
+    /// 90 % interval.
+    pub interval: [f64; 2],
+}
+
+impl FollowedModel {
+    /// States how a posterior was updated; weights follow when all models are.
+    pub fn new(
+        calibration: i64,
+        name: String,
+        weight_before: f64,
+        updated: Option<&UpdatedPosterior>,
+    ) -> Self {
+        let method = match updated.map(|updated| updated.method) {
+            Some(UpdateMethod::Reweighted) => "reweighted",
+            Some(UpdateMethod::Drawn(_)) => "drawn",
+            None => "calibrate again",
+        };
+        FollowedModel {
+            calibration,
+            name,
+            weight_before,
+            weight: None,
+            log_evidence: updated.map(|updated| updated.log_evidence),
+            method: method.to_owned(),
+            ess: updated.map(|updated| updated.ess),
+        }
+    }
+}
+
+/// Sets the weights of models from their evidences, if each has one.
+pub fn weigh(models: &mut [FollowedModel]) {
+    let logs: Option<Vec<f64>> = models.iter().map(|model| model.log_evidence).collect();
+    let Some(logs) = logs else {
+        return;
+    };
+    let max = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let total: f64 = logs.iter().map(|log| libm::exp(log - max)).sum();
+    for (model, log) in models.iter_mut().zip(logs) {
+        model.weight = Some(libm::exp(log - max) / total);
+    }
+}
+
+/// Returns the parameters of an updated posterior.
+pub fn parameters(spec: &Spec, updated: &UpdatedPosterior) -> Vec<FollowedParameter> {
+    let of = |(position, parameter): (usize, &job::FreeParameter)| {
+        let draws = updated.draws.iter().zip(&updated.weights);
+        let values: Vec<(f64, f64)> = draws
+            .map(|(draw, weight)| (draw.theta[position], *weight))
+            .collect();
+        Some(FollowedParameter {
+            name: parameter.name.clone(),
+            unit: parameter.unit.clone(),
+            mean: mean(&values)?,
+            sd: variance(&values)?.sqrt(),
+            interval: interval(&values)?,
+        })
+    };
+    spec.parameters.iter().enumerate().filter_map(of).collect()
+}
+
+/// Returns why a campaign may stop; `None` while a run helps.
+///
+/// Checked by `tests::a_campaign_stops_when_it_is_settled_or_no_run_helps`.
+pub fn stop(verdict: Verdict, next_runs: &[NextRun]) -> Option<String> {
+    match verdict {
+        Verdict::Named | Verdict::Class | Verdict::NotInLibrary => {
+            Some("the matter is settled: what is missing is named".into())
+        }
+        Verdict::NothingDetectable if next_runs.is_empty() => Some(
+            "these data show nothing missing, and no explanation is left that a run could separate".into(),
+        ),
+        Verdict::Undecided if next_runs.is_empty() => {
+            Some("no run that the rig could make would tell the explanations apart".into())
+        }
+        Verdict::NothingDetectable | Verdict::Undecided => None,
+    }
+}
+
+/// Returns the verdict of a search as the answer states it.
+pub fn verdict(found: &Discovery) -> (String, Vec<NextRun>, Option<String>) {
+    let stop = stop(found.verdict, &found.next_runs);
+    (found.text.clone(), found.next_runs.clone(), stop)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run() -> NextRun {
+        NextRun {
+            slip: 0.2,
+            wheel_load_n: 60.0,
+            sled_speed_m_s: 0.02,
+            separates: Vec::new(),
+            information_nats: 0.3,
+            settles: Some(0.5),
+        }
+    }
+
+    #[test]
+    fn a_campaign_stops_when_it_is_settled_or_no_run_helps() {
+        assert!(stop(Verdict::Named, &[run()]).unwrap().contains("settled"));
+        assert!(stop(Verdict::Undecided, &[]).unwrap().contains("no run"));
+        assert_eq!(stop(Verdict::Undecided, &[run()]), None);
+    }
+
+    #[test]
+    fn weights_follow_from_evidences_if_all_models_have_one() {
+        let model = |log_evidence| FollowedModel {
+            log_evidence,
+            ..FollowedModel::new(1, "m".into(), 0.5, None)
+        };
+        let mut models = vec![model(Some(-1000.0)), model(Some(-1000.0 + libm::log(3.0)))];
+        weigh(&mut models);
+        assert!((models[1].weight.unwrap() - 0.75).abs() < 1e-12);
+        models.push(model(None));
+        models.iter_mut().for_each(|model| model.weight = None);
+        weigh(&mut models);
+        assert_eq!(models[0].weight, None);
+    }
+}

@@ -1,0 +1,178 @@
+//! Further runs of a campaign while it lasts: the posterior, the models and the verdict with them, without a new calibration.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use shared::api::NewRuns;
+use shared::experiment::Experiment;
+use shared::file::FileSet;
+use shared::outcome::Outcome;
+
+use super::error::ServiceError;
+use super::handle::Service;
+use super::simulation::{in_parallel, simulate};
+use super::stored_calibration::FILES;
+use crate::embedded::Evaluate;
+use farm::calibration::MAX_EFFECTS_TOGETHER;
+use inference::{PosteriorUpdate, UpdateProgress, UpdatedPosterior};
+use job::{Job, PlannedRun, Spec, continued_job};
+use prediction::follow::{Followed, FollowedModel, parameters, verdict, weigh};
+use prediction::surprise::expectations;
+use prediction::{Ensemble, PredictionError, Question};
+use record::Discovery;
+use result::{FinishedCalibration, Outcome as Found, Study};
+use search::{RunningDiscovery, SearchModels};
+
+impl Service {
+    /// Adds runs to a calibration without storing anything: the posterior of each model of its study, their weights, the verdict of a search,
+    /// the next run, and which run contradicts the others.
+    ///
+    /// # Errors
+    /// [`ServiceError`]: the calibration has no posterior, or a row is malformed.
+    pub async fn follow(&self, id: i64, asked: NewRuns) -> Result<Followed, ServiceError> {
+        let row = self.calibration_row(id).await?;
+        let files = self.experiment(row.experiment).await?;
+        self.alone(id, move |study| followed(study, id, &files, &asked.runs))
+            .await
+    }
+}
+
+fn followed(study: Study, id: i64, files: &FileSet, csv: &str) -> Result<Followed, PredictionError> {
+    let (enlarged, _) = Experiment::with_runs(FILES[1], files, csv)?;
+    let experiment = Arc::new(Experiment::parse(FILES[1], &enlarged)?);
+    let ensemble = Ensemble::new(study, id, BTreeMap::new())?;
+    let before = ensemble.asked().spec.experiment.runs.len();
+    let gravity_m_s2 = experiment.rig.gravity_m_s2;
+    let added = experiment.runs[before..].iter().map(|run| PlannedRun {
+        run: run.clone(),
+        weight_n: run.wheel_load_n,
+        gravity_m_s2,
+        slope_deg: 0.0,
+    });
+    let added: Vec<PlannedRun> = added.collect();
+    let simulated = ensemble.simulate(added.clone(), None, |question| simulate(&question))?;
+    let mut models = Vec::new();
+    let mut of_asked = Vec::new();
+    for model in &simulated.models {
+        let calibration = &model.calibration;
+        let spec = enlarged_spec(calibration, &experiment)?;
+        let updated = updated(calibration, &spec)?;
+        let row = &calibration.row;
+        models.push(FollowedModel::new(
+            row.id,
+            calibration.spec.model_words(),
+            model.weight,
+            updated.as_ref(),
+        ));
+        if row.id == id
+            && let Some(updated) = &updated
+        {
+            of_asked = parameters(&spec, updated);
+        }
+    }
+    weigh(&mut models);
+    let job = &simulated.models[0].calibration.row.job;
+    let found = searched(&continued_job(FILES[0], job)?, &enlarged)?;
+    let (verdict, next_runs, stop) = verdict(&found);
+    Ok(Followed {
+        calibration: id,
+        runs: added.iter().map(|planned| planned.run.name.clone()).collect(),
+        expectations: expectations(&simulated, &added),
+        models,
+        parameters: of_asked,
+        verdict,
+        next_runs,
+        stop,
+    })
+}
+
+/// Returns the specification of a calibration with all runs.
+fn enlarged_spec(
+    calibration: &FinishedCalibration,
+    experiment: &Arc<Experiment>,
+) -> Result<Spec, PredictionError> {
+    let job = Job::read(FILES[0], &continued_job(FILES[0], &calibration.row.job)?)?;
+    Ok(Spec::from_values(
+        FILES[0],
+        job,
+        FILES[1],
+        Arc::clone(experiment),
+    )?)
+}
+
+/// Updates the posterior of a calibration; `None` if it must be calibrated again: too few draws count, or the runs bring parameters of their
+/// own.
+fn updated(
+    calibration: &FinishedCalibration,
+    spec: &Spec,
+) -> Result<Option<UpdatedPosterior>, PredictionError> {
+    let draws = match &calibration.outcome {
+        Found::Sampled(sampled) => &sampled.draws,
+        Found::Approximated { draws, .. } => draws,
+        Found::Estimated(_) => return Ok(None),
+    };
+    let names = |spec: &Spec| spec.parameters.iter().map(|p| p.name.clone()).collect::<Vec<_>>();
+    let Some(log_evidence) = calibration
+        .row
+        .log_evidence
+        .filter(|_| names(spec) == names(&calibration.spec))
+    else {
+        return Ok(None);
+    };
+    let seed = spec.algorithm.seed();
+    let mut update = PosteriorUpdate::new(spec.prior(), draws, log_evidence, seed);
+    loop {
+        let thetas = update.asked().iter();
+        let question = Question {
+            variants: vec![spec.sampled_variant()],
+            thetas: thetas.map(|theta| spec.model_theta(theta).to_vec()).collect(),
+        };
+        let answers = simulate(&question).map_err(PredictionError::Model)?;
+        let told = answers.iter().flatten().zip(update.asked());
+        let told = told.map(|(answer, theta)| spec.log_likelihood(answer.as_ref().ok(), theta));
+        let told = told
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(|e| PredictionError::Model(e.to_string()))?;
+        match update.tell(&told) {
+            UpdateProgress::Asks(next) => update = next,
+            UpdateProgress::Updated(updated) => return Ok(Some(updated)),
+            UpdateProgress::Failed => return Ok(None),
+        }
+    }
+}
+
+/// Searches the model of a job for a missing effect, as the farm does, in this process.
+fn searched(job: &FileSet, experiment: &FileSet) -> Result<Discovery, PredictionError> {
+    let model = |e: &dyn std::fmt::Display| PredictionError::Model(e.to_string());
+    let models = SearchModels::new(job, experiment, MAX_EFFECTS_TOGETHER)?;
+    let mut running = RunningDiscovery::new(models).map_err(|e| model(&e))?;
+    loop {
+        if let Some(found) = running.record() {
+            return Ok(found);
+        }
+        let count = running.pending().len();
+        let answer = |particle: usize| -> Result<Option<Vec<f64>>, String> {
+            let Some((variant, theta)) = running
+                .lease(particle)
+                .and_then(|(hash, theta)| Some((running.variant(hash)?, theta)))
+            else {
+                return Err("a query of the search has no variant".into());
+            };
+            Ok(match Evaluate::new(variant)?.evaluate(theta) {
+                Outcome::Evaluated(observables) => running.values(particle, &observables),
+                Outcome::Rejected(_) => None,
+                Outcome::Fault(fault) => return Err(fault.message),
+            })
+        };
+        let answers = in_parallel(count, answer).map_err(PredictionError::Model)?;
+        if count == 0 {
+            return Err(PredictionError::Model(
+                "the search has ended without a result".into(),
+            ));
+        }
+        for (particle, values) in answers.into_iter().enumerate() {
+            let values = values.map_err(PredictionError::Model)?;
+            running.tell(particle, values.as_deref()).map_err(|e| model(&e))?;
+        }
+    }
+}
