@@ -12,6 +12,7 @@
 //! - `stored_calibration`, `study_step`, `finished_study`: values that are read from the store.
 //! - `study_members`: the members of a study.
 //! - `results`: the texts about studies and calibrations, kept in the `result_cache`. `study_overview`: studies for the page.
+//! - `job_check`: a job before it is submitted, with its cost.
 //! - `predictions`: conditions of one's own and decisions; `simulation`: their simulations in this process.
 //! - `study_changes`: notifications of changes of studies.
 
@@ -23,6 +24,7 @@ mod farm_settings;
 mod finished_study;
 mod growth;
 mod handle;
+mod job_check;
 mod predictions;
 mod recovery;
 mod removal;
@@ -41,3 +43,4 @@ mod withdrawal;
 pub use error::ServiceError;
 pub use farm_settings::{FarmSettings, LEASE_MS, VERIFIED_PERCENT};
 pub use handle::Service;
+pub use job_check::{JobCheck, NewCheck};
