@@ -10,6 +10,7 @@
 //! - [`schema`]: schemas of the files that people write.
 //! - [`scale`]: how many workers Slurm, HyperQueue or Kubernetes should run, and the calls of their programs.
 //! - [`embedded`]: local workers in this process. No other module uses the crate `worker`.
+//! - [`pilot`]: a smaller calibration in this process, from which the cost of a job is estimated.
 //! - [`command`]: the verbs of the command line.
 //! - [`config`]: command line and environment.
 
@@ -24,6 +25,7 @@ pub mod effect;
 pub mod embedded;
 pub mod example;
 pub mod http;
+pub mod pilot;
 pub mod scale;
 pub mod schema;
 pub mod service;

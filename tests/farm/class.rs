@@ -36,7 +36,6 @@ fn the_rival_of_an_added_effect_and_the_run_that_decides_are_said_until_it_is_de
         after,
         "missing: slip_sinkage (P 0.54) is added: held-out error from 1.5 to 1.1 times the noise",
         RIVAL,
-        "beyond that, nothing that these data can show",
         "next: run the wheel at slip 0.80 under 280 N at 5.80 mm/s, which tells",
         "coordinator add-runs 1 new-runs.csv"
     );

@@ -11,6 +11,9 @@ use farm_tests::wait::until;
 use farm_tests::workspace::{root, text};
 use serde_json::Value;
 
+/// Maximum number of lines at the end of a run.
+const MOST_ROWS: usize = 15;
+
 /// Lines of a terminal of 80 columns.
 fn rows(text: &str) -> usize {
     text.lines()
@@ -19,7 +22,7 @@ fn rows(text: &str) -> usize {
 }
 
 #[test]
-fn the_first_command_ends_with_what_the_readme_prints_in_twenty_lines() {
+fn the_first_command_ends_with_what_the_readme_prints_in_fifteen_lines() {
     let folder = tempfile::tempdir().expect("a folder");
     let job = root().join("examples/hidden-effect/job.toml");
     let mut command = coordinator(["run"]);
@@ -30,10 +33,40 @@ fn the_first_command_ends_with_what_the_readme_prints_in_twenty_lines() {
     let (_, block) = readme.split_once("```text\n").expect("a block");
     let (block, _) = block.split_once("```").expect("its end");
     same(&printed, block);
-    assert!(rows(&printed) <= 20, "{} lines:\n{printed}", rows(&printed));
+    assert!(
+        rows(&printed) <= MOST_ROWS,
+        "{} lines:\n{printed}",
+        rows(&printed)
+    );
     // The last line of progress is the last line of standard error.
     let last = progress.lines().last().expect("progress");
     assert!(last.contains(" %"), "{progress}");
+}
+
+#[test]
+fn runs_of_measured_data_and_of_several_models_end_in_fifteen_lines() {
+    for job in ["cmu-sand/job.toml", "which-model/job.toml"] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let job = root().join("examples").join(job);
+        let mut command = coordinator(["run"]);
+        command.arg(job).current_dir(&folder);
+        let ended = run(command);
+        let notes = ended.stderr.clone();
+        let printed = ended.success();
+        assert!(
+            rows(&printed) <= MOST_ROWS,
+            "{} lines:\n{printed}",
+            rows(&printed)
+        );
+        for label in ["\nwrong:", "\nmissing:", "\nnext:", "\nfiles:", "\npage:"] {
+            assert!(printed.contains(label), "{label} in\n{printed}");
+        }
+        // Notes are broken between words, and not by the terminal.
+        let noted = notes.lines().filter(|line| !line.contains(" %"));
+        for line in noted {
+            assert!(line.chars().count() <= 80, "{line}");
+        }
+    }
 }
 
 #[test]

@@ -74,6 +74,14 @@ test("wheel, noise and limits are typed with decimal commas", async () => {
   const experiment = await page.getByLabel("Text von experiment.toml").inputValue();
   assert.match(experiment, /drawbar_pull_n = 1\.2\ntorque_n_m = 0\.15\nsinkage_m = 0\.0004/);
   assert.match(experiment, /\[rig\]\nwheel_load_range_n = \[40, 150\]/);
+  await page.getByRole("button", { name: "Prüfen, mit den Kosten" }).click();
+  const check = page.getByRole("region", { name: "Was der Job tun wird" });
+  await check.getByText("29 angepasste Fahrten mit 87 Messungen, 10 zurückgehalten").waitFor();
+  await check.getByText(/^(Etwa|Mehr als) [\d\s]+ Auswertungen zu je 58 Simulationen: .* auf einem Kern/).waitFor();
+  await check.getByText("density_kg_m3 under [soil.s] would add to the candidates").first().waitFor();
+  assert.deepEqual(await findings(page), []);
+  assert.equal(await sideways(page), 0);
+  await shot(page, "german-check");
   await fill("Autor", "Zoë Meyer");
   await fill("Schlagwörter", "Sand, Rinne 2");
   await page.getByRole("button", { name: "Kalibrierung starten" }).click();
@@ -95,6 +103,12 @@ test("the result is read in German, and printed on two pages", async () => {
   await page.getByText("Autor: Zoë Meyer").waitFor();
   assert.deepEqual(await findings(page), []);
   await shot(page, "german-story");
+  await page.getByRole("link", { name: "Vorhersage", exact: true }).click();
+  await page.getByText(/Bei dieser Bedingung gerechnet, mit \d+ Ziehungen/).waitFor();
+  await fill("Grenze [N]", "5,5");
+  await page.locator("p.answer b").waitFor();
+  assert.deepEqual(await findings(page), []);
+  await shot(page, "german-predict");
   const saved = page.waitForEvent("download");
   await page.getByRole("button", { name: "Bericht speichern" }).click();
   const report = await open({ url: pathToFileURL("/").href, locale: "de-DE" });
@@ -114,6 +128,7 @@ test("the result is read in German, and printed on two pages", async () => {
 });
 
 test("a switch changes the language, the units and the slips, and keeps them", async () => {
+  await page.getByRole("link", { name: "Ergebnis", exact: true }).click();
   await page.getByLabel("Sprache", { exact: true }).selectOption("en");
   await page.locator("h2", { hasText: "What to do next" }).waitFor();
   await page.getByLabel("Units", { exact: true }).selectOption("lbf, in, psi");

@@ -7,7 +7,7 @@ import { after, before, test } from "node:test";
 import { findings, open, shot, sideways } from "./browser.js";
 import { Service, filesOf } from "./service.js";
 
-const VIEWS = ["story", "live", "compare", "failures", "effects", "posterior", "errors", "trust"];
+const VIEWS = ["story", "live", "compare", "failures", "effects", "posterior", "predict", "errors", "trust"];
 /** What is sent for the first view. */
 const MOST_BYTES = 300_000;
 let service;
@@ -40,7 +40,7 @@ async function go(page, hash) {
   // Only the address changes within the page: what was there before says nothing.
   const [, name] = /studies\/\d+\/(\w+)/.exec(hash) ?? [];
   if (name) await page.locator(`section.view.${name}`).waitFor();
-  if (["story", "compare", "failures", "effects", "posterior", "errors"].includes(name)) await page.locator("figure .plot > svg").first().waitFor();
+  if (["story", "compare", "failures", "effects", "posterior", "predict", "errors"].includes(name)) await page.locator("figure .plot > svg").first().waitFor();
   await page.locator('[aria-busy="true"]').first().waitFor({ state: "detached" });
   await page.waitForFunction(() => [...document.querySelectorAll("figure .plot")].every((plot) => plot.firstElementChild || plot.getBoundingClientRect().width === 0));
 }
@@ -134,6 +134,47 @@ test("a list of many studies is found by words, in an order", () => within({}, a
   assert.deepEqual(await names(), ["gravel"]);
   assert.match(await page.locator("td[data-label=begun]").first().textContent(), /^20\d\d-\d\d-\d\d$/);
   assert.match(await page.locator("td[data-label=found]").first().textContent(), /janosi_hanamoto was missing \(P > 0\.999\) and is added/);
+}));
+
+test("the pictures of a view are one stop of the tab key each, and arrows go between their files", () => within({}, async (page) => {
+  await go(page, "#/studies/1/compare");
+  const bar = page.locator("figure .downloads").first();
+  assert.deepEqual(await bar.locator("button").evaluateAll((all) => all.map((button) => button.tabIndex)), [0, -1, -1]);
+  await bar.getByRole("button", { name: "SVG" }).focus();
+  for (const name of ["PNG", "CSV", "SVG"]) {
+    await page.keyboard.press("ArrowRight");
+    assert.equal(await page.evaluate(() => document.activeElement?.textContent), name);
+  }
+}));
+
+test("a view that is gone back to is where the reader left it", () => within({}, async (page) => {
+  await go(page, "#/studies/1/compare");
+  await page.evaluate(() => scrollTo(0, 500));
+  await page.waitForFunction(() => history.state?.top === 500);
+  await page.getByRole("link", { name: "Where it fails", exact: true }).click();
+  await page.locator("section.view.failures figure .plot > svg").first().waitFor();
+  assert.equal(await page.evaluate(() => scrollY), 0);
+  await page.goBack();
+  await page.waitForFunction(() => Math.abs(scrollY - 500) < 3);
+}));
+
+test("an address has the runs that are chosen and the effect whose curves are kept", () => within({}, async (page) => {
+  await go(page, "#/studies/1/failures");
+  const cell = page.locator('[data-figure$="residuals"] rect[data-run]').first();
+  const run = await cell.getAttribute("data-run");
+  await cell.click();
+  await page.waitForFunction((name) => location.hash.includes(`runs=${name}`), run);
+  await page.getByRole("link", { name: "Compare", exact: true }).click();
+  await page.waitForFunction((name) => location.hash.includes("compare") && location.hash.includes(`runs=${name}`), run);
+  const there = page.url();
+  await page.getByRole("button", { name: "Let them go" }).click();
+  await page.waitForFunction(() => !location.hash.includes("runs="));
+  await page.goto(there);
+  await page.getByRole("complementary", { name: "Chosen runs" }).getByText(`run ${run}`).waitFor();
+  await go(page, "#/studies/1/effects?model=1&effect=slip_sinkage");
+  await page.locator(".ghosts .ghost").first().waitFor({ state: "attached" });
+  await page.getByRole("button", { name: "show what janosi_hanamoto would change" }).click();
+  await page.waitForFunction(() => location.hash.includes("effect=janosi_hanamoto"));
 }));
 
 test("a table of runs is made when it is opened", () => within({}, async (page) => {

@@ -13,7 +13,7 @@ export function kindOf(/** @type {string} */ name, /** @type {string} */ text) {
     if (/^\s*\[(model|priors|sampler)\]/m.test(text) || /^\s*experiment\s*=/m.test(text)) return "job";
     return "effect";
   }
-  if (!/\.(csv|txt|tsv|dat)$/i.test(name)) return "file";
+  if (!/\.(csv|txt|tsv|dat)$/i.test(name)) return text.includes("\0") || text.includes("\ufffd") ? "binary" : "file";
   const { header } = parse(text);
   if (isRuns(header)) return "runs";
   if (header.includes("t_s")) return "history";

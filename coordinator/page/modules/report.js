@@ -1,5 +1,6 @@
 // A report: every view of a study below the other, from the answers that the file carries.
 
+import { spanWords, varying } from "./chart/condition.js";
 import { html, render } from "./html.js";
 import { t } from "./language/language.js";
 import { ChosenRuns } from "./part/chosen_runs.js";
@@ -44,7 +45,19 @@ function Report() {
 function facts(/** @type {any} */ study, /** @type {any} */ model, /** @type {any} */ provenance) {
   const day = study.created_ms ? new Date(study.created_ms).toISOString().slice(0, 10) : null;
   const line = study.ledger.find((/** @type {any} */ l) => l.calibration === model?.id);
-  return [day, line && runWords(line), provenance?.program].filter(Boolean).join("; ");
+  return [day, study.details?.author, line && runWords(line), model && campaignWords(model.id), provenance?.program].filter(Boolean).join("; ");
+}
+
+/** What the rig was set to: `wheel w; slip 0.05 to 0.6, wheel load 60 to 140 N`. */
+function campaignWords(/** @type {number} */ id) {
+  const rows = recorded(path.comparison(id))?.rows ?? [];
+  if (rows.length === 0) return null;
+  const wheels = [...new Set(rows.map((/** @type {any} */ row) => row.wheel))];
+  const spans = varying(rows).map((axis) => {
+    const values = rows.map((/** @type {any} */ row) => row[axis.key] * axis.scale);
+    return spanWords(axis, Math.min(...values), Math.max(...values));
+  });
+  return `${wheels.length === 1 ? t`wheel ${wheels[0]}` : t`wheels ${wheels.join(", ")}`}; ${spans.join(", ")}`;
 }
 
 /** Prints the story and the pictures of model and measurement, without the other sections. */

@@ -43,29 +43,67 @@ ${entries.join("\n")}
 /** What is done when the calibration is over, with its meaning. @type {[string, string][]} */
 export const SEARCHES = [["ask", t`search for a missing effect and report it`], ["auto", t`search, and add what is found`], ["off", t`calibrate alone`]];
 
+/** The models, with what they are. @type {[string, string][]} */
+export const MODELS = [
+  ["quasi_static", t`a smooth rim in steady motion: pressure by sinkage, shear by friction; seconds`],
+  ["wong_reece", t`a smooth rim whose pressure peaks ahead of the axle, shear by displacement; seconds`],
+  ["rft", t`resistive force theory of dry sand, with the grousers; seconds`],
+  ["scm", t`a wheel with its grousers that rolls over soil and deforms it; a thousand times slower: the most probable parameters alone`],
+];
+
+/** Forms of a prior, with their two numbers. @type {[string, string][]} */
+export const FORMS = [["uniform", t`between … and …`], ["normal", t`mean … and sd …`], ["fixed", t`fixed at …`]];
+
 /**
- * `job.toml`: the quasi-static model with priors of dry sands.
- * @param {{ wheels: Wheel[], search: string }} rig
+ * @typedef {{ name: string, unit: string, meaning: string, of: string[], form: string, numbers: [number, number], bounds: [number, number] | null }} Prior
+ *   of: the models that have the parameter. numbers: those of the form; the second of a fixed one counts for nothing. bounds: of a normal one
  */
-export function job({ wheels, search }) {
-  const radii = wheels.map(({ name, radiusMm }) => {
-    const parameter = wheels.length === 1 ? "wheel_radius_m" : `"wheel_radius_m.${name}"`;
-    return `${parameter} = { uniform = [${tidy(radiusMm / 1000)}, ${tidy((1.24 * radiusMm) / 1000)}] }      # the rim, and some soil that it carries along`;
-  });
+
+const SOIL = ["quasi_static", "wong_reece", "scm"];
+
+/** The priors of dry sands, and of wheels of these radii. @returns {Prior[]} */
+export function priorsOf(/** @type {{ name: string, radiusMm: number }[]} */ wheels) {
+  const radii = wheels.map(({ name, radiusMm }) => ({
+    name: wheels.length === 1 ? "wheel_radius_m" : `wheel_radius_m.${name}`, unit: "m", meaning: t`radius [m] of the rim with the soil that it carries along`,
+    of: [...SOIL, "rft"], form: "uniform", numbers: /** @type {[number, number]} */ ([radiusMm / 1000, (1.24 * radiusMm) / 1000]), bounds: null,
+  }));
+  return [
+    { name: "log10_p_ref", unit: "log10 Pa", meaning: t`log10 of the pressure [Pa] at 10 mm under a plate of 30 mm radius`, of: SOIL, form: "uniform", numbers: [3.3, 5.6], bounds: null },
+    { name: "kappa", unit: "1", meaning: t`k_c / (k_phi 30 mm); one wheel cannot tell k_c from k_phi`, of: SOIL, form: "fixed", numbers: [0, 0], bounds: null },
+    { name: "n", unit: "1", meaning: t`exponent of the sinkage in the pressure`, of: SOIL, form: "normal", numbers: [1.1, 0.2], bounds: [0.8, 2] },
+    { name: "friction_angle_deg", unit: "deg", meaning: t`angle of internal friction [°]`, of: SOIL, form: "normal", numbers: [30, 5.7], bounds: [11.5, 45] },
+    ...radii,
+    { name: "xi_n_pa_m", unit: "Pa/m", meaning: t`stiffness of the sand [Pa/m]`, of: ["rft"], form: "loguniform", numbers: [1e5, 1e8], bounds: null },
+  ];
+}
+
+/** Numbers of TOML: whole ones have a point. */
+const decimal = (/** @type {number} */ value) => (/[.e]/.test(tidy(value)) ? tidy(value) : `${tidy(value)}.0`);
+
+function priorText(/** @type {Prior} */ { form, numbers, bounds }) {
+  if (form === "fixed") return decimal(numbers[0]);
+  const limits = form === "normal" && bounds ? `, bounds = [${bounds.map(decimal).join(", ")}]` : "";
+  return `{ ${form} = [${numbers.map(decimal).join(", ")}]${limits} }`;
+}
+
+/**
+ * `job.toml` of one model, or of several that are compared.
+ * @param {{ models: string[], priors: Prior[], effects: string[], search: string }} choices effects: of the catalogue, which every model has
+ */
+export function job({ models, priors, effects, search }) {
+  const list = effects.length > 0 ? `effects = [${effects.map((effect) => JSON.stringify(effect)).join(", ")}]\n` : "";
+  const head = models.length === 1 ? "[model]" : "[[models]]";
+  const tables = models.map((kind) => `${head}\nkind = ${JSON.stringify(kind)}\n${list}`);
+  const lines = priors.filter(({ of }) => of.some((kind) => models.includes(kind))).map((prior) => `${key(prior.name)} = ${priorText(prior)}      # ${prior.meaning}`);
+  const algorithm = models.includes("scm") ? 'algorithm = "lm"            # the most probable parameters; without it, the whole posterior\n' : "";
   return `experiment = "experiment.toml"
 
-[model]
-kind = "quasi_static"         # a smooth rim; "scm": a rolling wheel with grousers, a thousand times slower
-
+${tables.join("\n")}
 [priors]
-log10_p_ref = { uniform = [3.3, 5.6] }      # log10 of the pressure [Pa] at 10 mm under a plate of 30 mm radius
-kappa = 0.0                                 # k_c / (k_phi 30 mm); one wheel cannot tell k_c from k_phi
-n = { normal = [1.1, 0.2], bounds = [0.8, 2.0] }
-friction_angle_deg = { normal = [30.0, 5.7], bounds = [11.5, 45.0] }
-${radii.join("\n")}
+${lines.join("\n")}
 
 [sampler]
-seed = 1
+${algorithm}seed = 1
 
 [discovery]
 apply = "${search}"                 # "ask": search for a missing effect and report it; "auto" also adds it; "off": none

@@ -3,6 +3,7 @@ import { test } from "node:test";
 
 import { parse } from "../modules/columns.js";
 import { experimentOf, fileOf, kindOf, missing, requests } from "../modules/draft.js";
+import * as modelChoices from "../modules/part/model_choices.js";
 import * as template from "../modules/template.js";
 
 const RUNS = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,history\na,w,s,0.2,100,0.01,logs/a.csv\n";
@@ -55,7 +56,34 @@ test("templates name what the form says", () => {
   assert.match(toml, /\[wheel\.a\]\nradius_m = 0\.125\nwidth_m = 0\.112\n/);
   assert.match(toml, /\[wheel\."b c"\]/);
   assert.match(toml, /drawbar_pull_n = 1\.2\nsinkage_m = "unknown"/);
-  assert.match(template.job({ wheels, search: "auto" }), /"wheel_radius_m\.a" = \{ uniform = \[0\.125, 0\.155\] \}/);
-  assert.match(template.job({ wheels, search: "auto" }), /\[discovery\]\napply = "auto"/);
-  assert.equal(parse("").header.length, 0);
+});
+
+test("a job has the priors of its models, a table for each model, and the effects from the start", () => {
+  const wheels = [{ name: "a", radiusMm: 125 }, { name: "b c", radiusMm: 60 }];
+  const priors = template.priorsOf(wheels);
+  const one = template.job({ models: ["quasi_static"], priors, effects: [], search: "auto" });
+  assert.match(one, /"wheel_radius_m\.a" = \{ uniform = \[0\.125, 0\.155\] \}/);
+  assert.match(one, /\[discovery\]\napply = "auto"/);
+  assert.match(one, /\[model\]\nkind = "quasi_static"\n\n/);
+  assert.match(one, /^n = \{ normal = \[1\.1, 0\.2\], bounds = \[0\.8, 2\.0\] \}/m);
+  assert.ok(!one.includes("xi_n_pa_m") && !one.includes("algorithm"));
+  const several = template.job({ models: ["wong_reece", "rft"], priors, effects: ["slip_sinkage"], search: "ask" });
+  assert.equal(several.match(/\[\[models\]\]\nkind = ".*"\neffects = \["slip_sinkage"\]\n/g)?.length, 2);
+  assert.match(several, /^xi_n_pa_m = \{ loguniform = \[100000\.0, 100000000\.0\] \}/m);
+  assert.match(template.job({ models: ["scm"], priors, effects: [], search: "off" }), /^algorithm = "lm"/m);
+  const alone = template.job({ models: ["rft"], priors, effects: [], search: "off" });
+  assert.ok(!alone.includes("friction_angle_deg") && alone.includes("wheel_radius_m"));
+});
+
+test("a typed prior takes the place of the proposed one, and what is no prior is said", () => {
+  const typed = (form, ...texts) => ({ models: ["quasi_static"], effects: [], search: "ask", changed: { n: { form, texts } } });
+  const n = (choices) => modelChoices.priorsOf(choices, [{ name: "w", radiusMm: 125 }]).find((prior) => prior.name === "n");
+  assert.deepEqual(n(typed("uniform", "0,9", "1.4")).numbers, [0.9, 1.4]);
+  assert.equal(n(typed("uniform", "0,9", "1.4")).bounds, null);
+  assert.deepEqual(n(typed("normal", "1", "0.1")).bounds, [0.8, 2]);
+  for (const bad of [typed("uniform", "2", "1"), typed("normal", "1", "0"), typed("fixed", "", "1")]) {
+    assert.equal(modelChoices.badPriors(bad).length, 1);
+    assert.deepEqual(n(bad).numbers, [1.1, 0.2]);
+  }
+  assert.deepEqual(modelChoices.badPriors(typed("fixed", "1", "")), []);
 });

@@ -116,10 +116,10 @@ test("a parameter is shown in the unit that the service states, which its name n
   const label = (/** @type {string} */ name, /** @type {string} */ unit) => titled(parameterName(name, unit), shown(unit).unit);
   assert.equal(label("xi_n_pa_m", "Pa/m"), "xi n [Pa/m]");
   assert.equal(shown("Pa/m").scale, 1);
-  assert.equal(label("wheel_radius_m.smooth", "m"), "wheel radius.smooth [mm]");
+  assert.equal(label("wheel_radius_m.smooth", "m"), "wheel radius: smooth [mm]");
   assert.equal(label("friction_angle_deg", "deg"), "friction angle [°]");
-  assert.equal(label("sled_drag.drag_n_s_m", "N s/m"), "sled drag.drag [N s/m]");
-  assert.equal(label("moisture.rate_per_m.grousered", "1/m"), "moisture.rate.grousered [1/m]");
+  assert.equal(label("sled_drag.drag_n_s_m", "N s/m"), "sled drag: drag [N s/m]");
+  assert.equal(label("moisture.rate_per_m.grousered", "1/m"), "moisture: rate: grousered [1/m]");
   assert.equal(label("log10_p_ref", "log10 Pa"), "log10 p ref [log10 Pa]");
   assert.equal(label("n", "1"), "n");
   // No unit is guessed from a name.

@@ -9,7 +9,7 @@ use shared::model::equations_of;
 use tokio::net::TcpListener;
 
 use super::exposure::exposure;
-use super::output::{note, say};
+use super::output::{note, say, width};
 use super::progress::Display;
 use super::shutdown::{Shutdown, Stopped, stop_signal};
 use crate::config::{ExposureArguments, ModelArguments};
@@ -194,22 +194,20 @@ impl Folder {
         details: Details,
     ) -> anyhow::Result<String> {
         let file = async |file| self.service.study_file(calibration, file).await;
-        let (mut text, is_brief) = match details {
-            Details::Hidden => (file(StudyFile::Brief).await?, true),
-            Details::Shown { .. } => (file(StudyFile::Details).await?, false),
-        };
-        text.push('\n');
-        if let Details::Shown { searched } = details {
-            let named = rounds.iter().find(|r| Some(r.calibration) == searched);
-            if let Some(round) = named.or(rounds.last()) {
-                let place = format!("--out {}", self.out.display());
-                text += &terminal::discovery::text(&round.record, round.calibration, &place, &self.out);
-                text.push('\n');
-            }
-        }
         let story = serde_json::from_str(&file(StudyFile::Story).await?)?;
-        text += &terminal::story(&story, &self.out, is_brief);
-        Ok(text + &terminal::ending(&self.out, is_brief))
+        let Details::Shown { searched } = details else {
+            let brief = file(StudyFile::Brief).await?;
+            return Ok(terminal::run_end(&brief, &story, &self.out, width()));
+        };
+        let mut text = file(StudyFile::Details).await? + "\n";
+        let named = rounds.iter().find(|r| Some(r.calibration) == searched);
+        if let Some(round) = named.or(rounds.last()) {
+            let place = format!("--out {}", self.out.display());
+            text += &terminal::discovery::text(&round.record, round.calibration, &place, &self.out);
+            text.push('\n');
+        }
+        text += &terminal::story(&story, &self.out, width());
+        Ok(text + &terminal::ending(&self.out))
     }
 
     /// Simulates until the study is over, or until an interrupt.

@@ -8,7 +8,7 @@ use tokio::net::TcpListener;
 
 use super::folder::{Details, Folder};
 use super::job_on_disk::{self, JobOnDisk};
-use super::output::note;
+use super::output::remark;
 use crate::config::RunArguments;
 use job::Spec;
 use report::model_limits;
@@ -20,7 +20,7 @@ pub(super) async fn run(config: RunArguments) -> anyhow::Result<()> {
         .chain(&job.alternatives)
         .flat_map(model_limits)
     {
-        note(&format!("note: {text}"));
+        remark("note:", &text);
     }
     let out = config
         .out

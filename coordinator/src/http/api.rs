@@ -3,8 +3,8 @@
 use utoipa_axum::router::OpenApiRouter;
 
 use super::{
-    calibrations, document, effects, events, examples, experiments, growth, import, predictions, studies,
-    work,
+    calibrations, document, effects, events, examples, experiments, growth, import, job_check, predictions,
+    studies, work,
 };
 use crate::service::Service;
 
@@ -16,6 +16,7 @@ pub(super) fn api() -> OpenApiRouter<Service> {
         .merge(effects::routes())
         .merge(import::routes())
         .merge(calibrations::routes())
+        .merge(job_check::routes())
         .merge(events::routes())
         .merge(studies::routes())
         .merge(predictions::routes())

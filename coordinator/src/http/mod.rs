@@ -24,6 +24,7 @@ mod growth;
 mod host;
 mod import;
 mod in_process;
+mod job_check;
 mod list_page;
 mod metrics;
 mod page;

@@ -67,6 +67,10 @@ pub(super) fn request_example(operation: &str) -> Option<Value> {
             let files: serde_json::Map<String, Value> = files.iter().map(text_of).collect();
             json!({"toml": experiment.1, "files": files})
         }
+        "check_job" => {
+            let files: serde_json::Map<String, Value> = files.iter().map(text_of).collect();
+            json!({"experiment": {"toml": experiment.1, "files": files}, "toml": job.1})
+        }
         "create_calibration" => json!({"experiment": 1, "toml": job.1, "name": name}),
         "extend_calibration" => json!({"effect": "slip_sinkage"}),
         "describe_study" => {

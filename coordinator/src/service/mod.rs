@@ -13,6 +13,7 @@
 //! - `study_members`: the members of a study.
 //! - `results`: the texts about studies and calibrations, kept in the `result_cache`. `study_overview`: studies for the page.
 //! - `follow`: further runs of a campaign while it lasts.
+//! - `job_check`: a job before it is submitted, with its cost.
 //! - `predictions`: conditions of one's own and decisions; `simulation`: their simulations in this process.
 //! - `study_changes`: notifications of changes of studies.
 
@@ -25,6 +26,7 @@ mod finished_study;
 mod follow;
 mod growth;
 mod handle;
+mod job_check;
 mod predictions;
 mod recovery;
 mod removal;
@@ -43,3 +45,4 @@ mod withdrawal;
 pub use error::ServiceError;
 pub use farm_settings::{FarmSettings, LEASE_MS, VERIFIED_PERCENT};
 pub use handle::Service;
+pub use job_check::{JobCheck, NewCheck};

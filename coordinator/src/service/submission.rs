@@ -89,17 +89,8 @@ fn members(
     experiment: &FileSet,
 ) -> Result<Vec<(Calibration, NewCalibrationRow)>, ServiceError> {
     let file = "job.toml";
-    // Messages name the lines of the user's file; the stored job has the files of users' effects.
-    let mut parsed = Job::parse_models(file, &without_service_effects(file, &job.toml, service_effects)?)?;
-    parsed.first.check_files(file, &job.files)?;
-    let names: Vec<String> = service_effects.iter().map(|effect| effect.file.clone()).collect();
-    let added = parsed.first.list_effects(&[], &names);
-    added.map_err(|e| FileError::whole(file, e))?;
+    let mut specs = specs_of(&job, service_effects, experiment)?;
     let job = with_service_effects(file, job, service_effects)?;
-    let mut specs = Spec::of_models(file, parsed, &job.files, "experiment.toml", experiment)?;
-    for spec in &specs {
-        check_accepted(spec).map_err(|e| FileError::whole(file, e.to_string()))?;
-    }
     let alternatives = specs.split_off(1);
     let spec = specs.remove(0);
     let point_estimates = spec.point_estimates.clone();
@@ -127,6 +118,27 @@ fn members(
         members.push(member(name, Some(change), spec, job, identity)?);
     }
     Ok(members)
+}
+
+/// Reads the models of a job. Effects of the service's catalogue that the job lists count as files of it.
+pub(super) fn specs_of(
+    job: &FileSet,
+    service_effects: &[ServiceEffect],
+    experiment: &FileSet,
+) -> Result<Vec<Spec>, ServiceError> {
+    let file = "job.toml";
+    // Messages name the lines of the user's file; the stored job has the files of users' effects.
+    let mut parsed = Job::parse_models(file, &without_service_effects(file, &job.toml, service_effects)?)?;
+    parsed.first.check_files(file, &job.files)?;
+    let names: Vec<String> = service_effects.iter().map(|effect| effect.file.clone()).collect();
+    let added = parsed.first.list_effects(&[], &names);
+    added.map_err(|e| FileError::whole(file, e))?;
+    let job = with_service_effects(file, job.clone(), service_effects)?;
+    let specs = Spec::of_models(file, parsed, &job.files, "experiment.toml", experiment)?;
+    for spec in &specs {
+        check_accepted(spec).map_err(|e| FileError::whole(file, e.to_string()))?;
+    }
+    Ok(specs)
 }
 
 /// Makes a calibration with its row, in which the store fills in the parent.

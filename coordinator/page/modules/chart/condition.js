@@ -21,6 +21,6 @@ export function varying(/** @type {any[]} */ rows) {
 
 /** `slip 0.05 to 0.2`. */
 export function spanWords(/** @type {ConditionAxis} */ axis, /** @type {number} */ from, /** @type {number} */ to) {
-  const text = (/** @type {number} */ v) => String(Number(v.toPrecision(2))).replace("-", "−");
+  const text = (/** @type {number} */ v) => String(Number(v.toPrecision(3))).replace("-", "−");
   return `${axis.short} ${text(from)}${t` to `}${text(to)}${axis.unit === "1" ? "" : ` ${axis.unit}`}`;
 }

@@ -59,12 +59,21 @@ export function Figure({ title, name, deps, draw, rows, note, legend, onDrawn })
       <div class="plot" ref=${place}></div>
       ${failure && html`<p class="error">${failure}</p>`}
       ${legend && html`<div class="legend">${legend}</div>`}
-      <div class="downloads" role="group" aria-label=${t`download: ${title}`}>
+      <div class="downloads" role="toolbar" aria-label=${t`download: ${title}`} onKeyDown=${roam}>
         <button type="button" onClick=${() => save(`${name}.svg`, svg(figure()))}>SVG</button>
-        <button type="button" onClick=${savePng}>PNG</button>
-        ${rows && html`<button type="button" onClick=${() => save(`${name}.csv`, csv(rows()))}>CSV</button>`}
+        <button type="button" tabindex="-1" onClick=${savePng}>PNG</button>
+        ${rows && html`<button type="button" tabindex="-1" onClick=${() => save(`${name}.csv`, csv(rows()))}>CSV</button>`}
       </div>
     </figure>`;
+}
+
+/** Arrows go between the buttons of a toolbar, which is one stop of the tab key. */
+function roam(/** @type {KeyboardEvent} */ event) {
+  const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+  if (step === undefined) return;
+  const buttons = [.../** @type {HTMLElement} */ (event.currentTarget).querySelectorAll("button")];
+  const at = buttons.indexOf(/** @type {any} */ (event.target));
+  buttons[(at + step + buttons.length) % buttons.length].focus();
 }
 
 /**

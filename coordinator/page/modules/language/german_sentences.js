@@ -126,8 +126,6 @@ export const SENTENCES = {
     "Das Fehlerbuch hat eine Zeile für jede fertige Kalibrierung mit Posterior; noch ist keine fertig.",
   "The model accepted every draw from the prior ({0}).": "Das Modell hat jede Ziehung aus dem Prior angenommen ({0}).",
   "the model explains the runs to within the noise": "das Modell erklärt die Fahrten bis auf das Rauschen",
-  "The model is quasi_static: a smooth rim, in seconds. Its priors are those of dry sands. job.toml has both, to be edited.":
-    "Das Modell ist quasi_static: ein glatter Radkranz, in Sekunden. Seine Priors sind die trockener Sande. Beides steht in job.toml und lässt sich bearbeiten.",
   "the model was not searched for a missing effect": "nach einem fehlenden Effekt wurde nicht gesucht",
   "The noise is the standard deviation of one measurement. Where the field is blank, it is inferred with the model; a misfit then counts as noise.":
     "Das Rauschen ist die Standardabweichung einer Messung. Wo das Feld leer ist, wird es mit dem Modell geschätzt; eine Abweichung zählt dann als Rauschen.",

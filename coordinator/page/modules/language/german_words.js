@@ -286,7 +286,6 @@ export const WORDS = {
   "of {0}": "von {0}",
   "oldest first": "älteste zuerst",
   "One more run": "Eine weitere Fahrt",
-  "Open the posterior": "Den Posterior öffnen",
   "Or begin with an example:": "Oder beginnen Sie mit einem Beispiel:",
   "or choose them:": "oder auswählen:",
   "or the same in all rows": "oder gleich in allen Zeilen",

@@ -1,16 +1,38 @@
 // The runs that are chosen, and what can be done with them: a bar at the bottom of every view.
 
-import { html, useState } from "../html.js";
+import { html, useEffect, useRef, useState } from "../html.js";
 import { t } from "../language/language.js";
 import { isReport } from "../rest/answers.js";
 import { get, path, whatIf } from "../rest/routes.js";
-import { address } from "../route.js";
+import { address, parse, replace } from "../route.js";
 import { choose, useChosen } from "../selection.js";
 import { Failure } from "./message.js";
 
-/** @param {{ study: any, model: any }} properties */
-export function ChosenRuns({ study, model }) {
+/** More names make an address that mail programs break. */
+const MOST_NAMES = 60;
+
+/** The names of chosen runs for the address; null where they do not fit into one. */
+function named(/** @type {{ runs: Set<string> } | null} */ chosen) {
+  const names = [...chosen?.runs ?? []];
+  return names.length === 0 || names.length > MOST_NAMES || names.some((name) => name.includes(",")) ? null : names.join(",");
+}
+
+/** @param {{ study: any, model: any, asked?: string, view?: string }} properties asked: the runs of the address. view: the one that is shown */
+export function ChosenRuns({ study, model, asked, view }) {
   const chosen = useChosen();
+  const known = useRef(/** @type {string | null} */ (null));
+  useEffect(() => {
+    if (isReport) return;
+    // An address brings its choice with it, and has the one that is made.
+    const { place, query } = parse(location.hash);
+    const now = named(chosen);
+    const [first] = [query.runs].filter((runs) => runs && runs !== known.current);
+    known.current = first ?? now;
+    if (first) {
+      const names = first.split(",");
+      choose(names, names.length === 1 ? t`run ${names[0]}` : t`${names.length} runs`);
+    } else if ((query.runs ?? null) !== now) replace(address(place, { ...query, runs: now }));
+  }, [chosen, asked, view]);
   const [failure, setFailure] = useState(/** @type {any} */ (null));
   const [isBusy, setBusy] = useState(false);
   if (!chosen) return null;

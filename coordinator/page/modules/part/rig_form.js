@@ -5,6 +5,7 @@ import { html, useState } from "../html.js";
 import { t } from "../language/language.js";
 import * as template from "../template.js";
 import { numberOf, short } from "../words/quantity.js";
+import { badPriors, ModelChoices, priorsOf } from "./model_choices.js";
 
 /** Units of the measured columns in which people give the noise, as factors to SI. */
 const CHANNELS = { drawbar_pull_n: ["N", 1], torque_n_m: ["N m", 1], sinkage_m: ["mm", 0.001], lateral_force_n: ["N", 1] };
@@ -25,7 +26,7 @@ export function RigForm({ runs, onFiles }) {
   const soils = of("soil");
   const channels = Object.entries(CHANNELS).filter(([channel]) => header.includes(channel));
   const [typed, setTyped] = useState(/** @type {Record<string, string>} */ ({}));
-  const [search, setSearch] = useState(template.SEARCHES[0][0]);
+  const [choices, setChoices] = useState(/** @type {import("./model_choices.js").Choices} */ ({ models: ["quasi_static"], changed: {}, effects: [], search: template.SEARCHES[0][0] }));
   const [said, setSaid] = useState(/** @type {string[]} */ ([]));
   const value = (/** @type {string} */ key) => ((typed[key] ?? "").trim() === "" ? null : numberOf(typed[key]) ?? NaN);
   const isBad = (/** @type {number | null} */ number) => number !== null && !(number > 0);
@@ -45,6 +46,8 @@ export function RigForm({ runs, onFiles }) {
       })),
       ...[...channels.map(([c]) => [c, t`noise of ${noiseOf(c)}`]), ...PROPERTIES].filter(([key]) => isBad(value(key))).map(([, words]) => t`${words}: a number greater than 0, or nothing`),
       ...RANGES.filter(([key]) => ranges[key] && !(ranges[key][0] <= ranges[key][1])).map(([, words]) => t`limits of ${words}: two numbers, the smaller first`),
+      ...badPriors(choices),
+      ...(choices.models.length === 0 ? [t`choose a model`] : []),
       ...(soils.length > 1 ? [t`one soil: runs.csv has ${soils.join(", ")}, and an experiment has one`] : []),
     ];
     setSaid(wrong);
@@ -58,7 +61,7 @@ export function RigForm({ runs, onFiles }) {
       return [c, sd === null ? "unknown" : String(Number((sd * Number(scale)).toPrecision(9)))];
     }));
     const bounds = { density: value("density"), binLength: value("bin"), slip: ranges.slip, load: ranges.load, speed: ranges.speed };
-    onFiles({ "experiment.toml": template.experiment({ wheels, soil: soils[0] ?? "soil", noise: sds, bounds }), "job.toml": template.job({ wheels, search }) });
+    onFiles({ "experiment.toml": template.experiment({ wheels, soil: soils[0] ?? "soil", noise: sds, bounds }), "job.toml": template.job({ ...choices, priors: priorsOf(choices, wheels) }) });
   };
   const field = (/** @type {string} */ key, /** @type {string} */ label) => html`
     <label class="field">${label} <input size="8" inputmode="decimal" value=${typed[key] ?? ""} onInput=${(/** @type {any} */ e) => setTyped({ ...typed, [key]: e.target.value })} /></label>`;
@@ -75,10 +78,7 @@ export function RigForm({ runs, onFiles }) {
       <p class="note">All may stay blank. Some effects need the density or the length of the bin; runs are proposed within the limits.</p>
       <div class="actions">${PROPERTIES.map(([key, words, of]) => field(key, `${words}${unit(of)}`))}</div>
       <div class="actions">${RANGES.map(([key, words, of]) => html`${field(`${key} from`, t`${words} at least [${of}]`)} ${field(`${key} to`, t`at most [${of}]`)}`)}</div>
-      <h3>What is computed</h3>
-      <p class="note">The model is quasi_static: a smooth rim, in seconds. Its priors are those of dry sands. job.toml has both, to be edited.</p>
-      <label>After the calibration <select value=${search} onChange=${(/** @type {any} */ e) => setSearch(e.target.value)}>
-        ${template.SEARCHES.map(([name, words]) => html`<option value=${name} selected=${name === search}>${words}</option>`)}</select></label>
+      <${ModelChoices} choices=${choices} wheels=${names} change=${setChoices} />
       ${said.map((problem) => html`<p class="error" role="alert">${problem}</p>`)}
       <p><button class="main" type="submit">Write experiment.toml and job.toml</button></p>
     </form>`;

@@ -49,6 +49,12 @@ export const describe = (/** @type {number} */ id, /** @type {Schemas["StudyDeta
 /** The report of a study as a file. @returns {Promise<Blob>} */
 export const reportOf = async (/** @type {number} */ id) => (await request("GET", `${calibration(id)}/report`)).blob();
 
+/** @returns {Promise<Schemas["Prediction"]>} */
+export const predict = (/** @type {number} */ id, /** @type {Partial<Schemas["NewPrediction"]>} */ asked) => post(`${calibration(id)}/predict`, asked);
+
+/** @returns {Promise<Schemas["JobCheck"]>} */
+export const check = (/** @type {Schemas["NewCheck"]} */ job) => post("/v1/check", job);
+
 /** @returns {Promise<Schemas["CalibrationCreated"]>} */
 export const discover = (/** @type {number} */ id) => post(`${calibration(id)}/discovery`);
 

@@ -36,6 +36,7 @@ export function Failures({ study, model }) {
   const axis = axes.find((a) => a.key === order) ?? MADE;
   const findings = diagnostics?.findings ?? [];
   return html`
+    ${model.story && html`<p class="verdict">${capital(model.story.wrong.text)}.</p>`}
     <div class="actions" role="group" aria-label="Ordered by">
       <span class="note">Ordered by</span>
       ${orders.map((o) => html`<button type="button" aria-pressed=${o.key === order} onClick=${() => setOrder(o.key)}>${o.title}</button>`)}

@@ -1,6 +1,6 @@
 // How the sampler of a study comes to its result: state, stages, particles; it goes on after a restart of the coordinator.
 
-import { html, useEffect, useState } from "../html.js";
+import { html, useEffect, useRef, useState } from "../html.js";
 import { t, translated } from "../language/language.js";
 import { Controls } from "../part/controls.js";
 import { Leaders } from "../part/leaders.js";
@@ -16,6 +16,7 @@ import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address, replace } from "../route.js";
 import { words } from "../words/quantity.js";
+import { shareOf, toGo } from "../words/share.js";
 import { progressWords } from "../words/state.js";
 
 /** How often the workers are asked for [ms]. */
@@ -77,10 +78,15 @@ function Member(/** @type {{ member: any, reload: () => void }} */ { member, rel
   const isLoading = isOver && recorded.answer === null;
   const state = isOver ? member.state : status?.state ?? member.state;
   const progress = isOver ? null : status?.progress;
+  const share = progress ? shareOf(progress) : null;
+  const seen = useRef(/** @type {{ share: number, ms: number } | null} */ (null));
+  if (share !== null) seen.current ??= { share, ms: Date.now() };
   return html`
     <h2>${member.name}</h2>
     <p aria-live="polite"><span class=${`state ${state}`}>${translated(state)}</span>${progress ? `: ${progressWords(progress)}` : ""}
       ${progress && html` <span class="note">${Math.round(progress.evaluations_per_s)} evaluations/s; ${progress.rejected} rejected by the model</span>`}</p>
+    ${share !== null && html`<p class="whole-share"><label>Whole <progress max="1" value=${share}></progress> ${t`about ${Math.round(100 * share)} %`}</label>
+      ${progress.remaining_s === null && seen.current && html` <span class="note">${toGo(share, seen.current, Date.now())}</span>`}</p>`}
     ${progress && html`<p><label>Present step <progress max=${Math.max(1, progress.step_size)} value=${progress.step_done}></progress> ${percentage(progress.step_done, progress.step_size)}
       <span class="note">(${progress.step_done} of ${progress.step_size} evaluations)</span></label></p>`}
     <${Failure} error=${failure} />

@@ -13,12 +13,12 @@ import { NotTried } from "../part/not_tried.js";
 import { isReport } from "../rest/answers.js";
 import { discover, extend, path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { address } from "../route.js";
+import { address, replace } from "../route.js";
 import { byChange, withGhost } from "../words/ghost.js";
 import { capital } from "../words/quantity.js";
 
-/** @param {{ study: any, model: any, reload?: () => void }} properties */
-export function MissingEffect({ study, model, reload }) {
+/** @param {{ study: any, model: any, query: Record<string, string>, reload?: () => void }} properties query.effect: whose curves are kept over the data */
+export function MissingEffect({ study, model, query, reload }) {
   const searches = study.members.filter((/** @type {any} */ m) => m.kind === "search" && m.searches === model?.id);
   const search = searches.findLast((/** @type {any} */ m) => m.state === "finished") ?? searches.at(-1);
   const isFound = search?.state === "finished";
@@ -26,11 +26,16 @@ export function MissingEffect({ study, model, reload }) {
   const { answer: record, error } = useAnswer(isFound ? path.discovery(search.id) : null);
   const { answer: comparison } = useAnswer(model ? path.comparison(model.id) : null);
   const [pointed, setPointed] = useState(/** @type {string | null} */ (null));
-  const [kept, setKept] = useState(/** @type {string | null} */ (null));
+  const [kept, setKept] = useState(/** @type {string | null} */ (query.effect ?? null));
   const ghost = pointed ?? kept;
   const [failure, setFailure] = useState(/** @type {any} */ (null));
   const [isBusy, setBusy] = useState(false);
   if (!model) return html`<p class="empty">No calibration of this study is finished yet.</p>`;
+  // Whoever gets the address sees the same curves.
+  const keep = (/** @type {string | null} */ effect) => {
+    setKept(effect);
+    if (!isReport) replace(address(["studies", study.id, "effects"], { ...query, effect }));
+  };
   const act = async (/** @type {() => Promise<any>} */ what) => {
     setFailure(null);
     setBusy(true);
@@ -59,7 +64,7 @@ export function MissingEffect({ study, model, reload }) {
     <${Failure} error=${failure} />
     <div class="beside">
       <div>
-        <${Explanations} record=${record} ghost=${ghost} kept=${kept} show=${setPointed} keep=${setKept} add=${isReport ? null : add} study=${study} model=${model} isBusy=${isBusy} reload=${reload} />
+        <${Explanations} record=${record} ghost=${ghost} kept=${kept} show=${setPointed} keep=${keep} add=${isReport ? null : add} study=${study} model=${model} isBusy=${isBusy} reload=${reload} />
       </div>
       <div class="ghosts">
         <p class="note" aria-live="polite">${ghost ? html`Dashed: what <b>${OTHERS[ghost] ?? ghost}</b> would predict for the fitted runs, from the search's fit. Nothing has been computed anew.` : t`Point at an explanation: its predictions appear over the data before anything is computed; a click on its name keeps them.`}</p>

@@ -6,11 +6,12 @@ import { html, useEffect, useState } from "../html.js";
 import { t } from "../language/language.js";
 import { DropZone } from "../part/drop_zone.js";
 import { FileCard } from "../part/file_card.js";
+import { JobCheck } from "../part/job_check.js";
 import { ImportTable } from "../part/import_table.js";
 import { Failure } from "../part/message.js";
 import { RigForm } from "../part/rig_form.js";
 import { RunChoices } from "../part/run_choices.js";
-import { addExperiment, describe, filesOfStudy, get, path, submit } from "../rest/routes.js";
+import { addExperiment, check, describe, filesOfStudy, get, path, submit } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address } from "../route.js";
 import { tagsOf } from "../words/details.js";
@@ -29,6 +30,9 @@ export function NewCalibration({ query }) {
   const [tags, setTags] = useState("");
   const [failure, setFailure] = useState(/** @type {any} */ (null));
   const [isSent, setSent] = useState(false);
+  // What the service says of the job as it stands; nothing where it has changed since.
+  const [checked, setChecked] = useState(/** @type {any} */ (null));
+  const [isChecked, setBusy] = useState(false);
   // A calibration that runs, although its author and tags were not kept.
   const [begun, setBegun] = useState(/** @type {{ study: number, message: string } | null} */ (null));
   const examples = useAnswer(path.examples);
@@ -39,6 +43,7 @@ export function NewCalibration({ query }) {
   const change = (/** @type {Files} */ next) => {
     setFiles(next);
     setFailure(null);
+    setChecked(null);
     setBegun(null);
   };
   const add = (/** @type {Files} */ more) => change({ ...files, ...more });
@@ -84,6 +89,18 @@ export function NewCalibration({ query }) {
     const { details } = await get(path.study(study));
     await describe(study, { ...details, author: name || details.author, tags: words });
   };
+  const look = async () => {
+    setBusy(true);
+    setFailure(null);
+    setChecked(null);
+    try {
+      const { experiment: rig, job: calibration } = requests(files, /** @type {string} */ (job), /** @type {string} */ (experiment));
+      setChecked(await check({ experiment: rig, ...calibration }));
+    } catch (error) {
+      setFailure(error);
+    }
+    setBusy(false);
+  };
   const start = async () => {
     setSent(true);
     setFailure(null);
@@ -123,15 +140,17 @@ export function NewCalibration({ query }) {
     ${isAsked && html`<${RigForm} runs=${files[runs]} onFiles=${add} />`}
     ${Object.keys(files).filter((own) => own !== table).map((own) => html`<${FileCard} key=${own} name=${own} text=${files[own]} kind=${kinds[own]} isUsed=${used === null || used.has(own)}
       error=${place === own ? failure : null} onText=${(/** @type {string} */ text) => add({ [own]: text })} onRemove=${() => remove(own)} />`)}
-    ${of("job").length > 1 && html`<p><label>Job <select value=${job} onChange=${(/** @type {any} */ e) => setJob(e.target.value)}>
+    ${of("job").length > 1 && html`<p><label>Job <select value=${job} onChange=${(/** @type {any} */ e) => { setJob(e.target.value); setChecked(null); }}>
       ${of("job").map((own) => html`<option value=${own} selected=${own === job}>${own}</option>`)}</select></label></p>`}
     ${!isEmpty && !table && !isAsked && absent.length > 0 && html`<div class="missing" role="status"><p>Still needed:</p><ul>${absent.map((what) => html`<li>${what}</li>`)}</ul></div>`}
     ${failure && place === null && html`<${Failure} error=${failure} />`}
     ${begun && html`<p class="note" role="status">The calibration runs, but its author and tags were not kept: ${begun.message}. <a href=${address(["studies", begun.study, "live"])}>See it run</a></p>`}
+    ${checked && html`<${JobCheck} answer=${checked} />`}
     ${!isEmpty && html`<div class="actions">
       <label>Name <input value=${name} placeholder="as the study is listed" onInput=${(/** @type {any} */ e) => setName(e.target.value)} /></label>
       <label>Author <input value=${person} onInput=${(/** @type {any} */ e) => setPerson(e.target.value)} /></label>
       <label>Tags <input value=${tags} placeholder="sand, wheel 3" onInput=${(/** @type {any} */ e) => setTags(e.target.value)} /></label>
+      <button type="button" disabled=${absent.length > 0 || Boolean(table) || isChecked} onClick=${look}>${isChecked ? t`A pilot runs …` : t`Check, with its cost`}</button>
       <button class="main" type="button" disabled=${absent.length > 0 || Boolean(table) || isSent || begun !== null} onClick=${start}>${isSent ? t`It is being sent` : t`Start the calibration`}</button>
     </div>`}`;
 }

@@ -99,7 +99,7 @@ function Step(/** @type {{ step: any, study: any, model: any, reload?: () => voi
     discover: () => html`<button class="main" type="button" disabled=${isBusy} onClick=${() => act(() => discover(model.id))}>Search for the missing effect</button>`,
     predict: () => (study.current !== model.id
       ? html`<a class="button" href=${address(["studies", study.id, "story"], { model: study.current })}>Go to the current model</a>`
-      : html`<a class="button" href=${address(["studies", study.id, "posterior"], { model: model.id })}>Open the posterior</a>`),
+      : html`<a class="button" href=${address(["studies", study.id, "predict"], { model: model.id })}>Predict</a>`),
     make_runs: () => html`<a class="button" href=${address(["studies", study.id, "effects"], { model: step.calibration })}>See the runs, and add them</a>`,
   });
   const button = !isReport && model && buttons[step.kind];

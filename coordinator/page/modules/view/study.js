@@ -52,7 +52,7 @@ export function StudyPage({ id, view, query }) {
       <${Guarded} key=${`${shown.name} ${model?.id}`} title=${shown.title}><${ShownView} view=${shown} study=${study} model=${model} query=${query} reload=${reload} /><//>
     </section>
     <${StudyActions} study=${study} reload=${reload} />
-    <${ChosenRuns} study=${study} model=${model} />`;
+    <${ChosenRuns} study=${study} model=${model} asked=${query.runs} view=${shown.name} />`;
 }
 
 /** Which model of the study the pictures show. */

@@ -6,7 +6,7 @@ import { Pending } from "../part/message.js";
 import { Table } from "../part/table.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { capital, channelName, digits, parameterName, probability, shown } from "../words/quantity.js";
+import { capital, channelName, digits, parameterName, probability, shown, titled } from "../words/quantity.js";
 import { judgements } from "../words/trust.js";
 
 /** @param {{ study: any, model: any }} properties */
@@ -73,8 +73,8 @@ function verified(/** @type {any} */ { results, confirmed, workers }) {
 function Refused(/** @type {{ rejections: any }} */ { rejections }) {
   if (rejections.prior_draws === 0) return null;
   if (rejections.prior_refused === 0) return html`<p>The model accepted every draw from the prior (${rejections.prior_draws}).</p>`;
-  const end = (/** @type {number | null} */ v) => (v === null ? "" : digits(v, 3));
-  const cell = (/** @type {any} */ bin) => {
+  const cell = (/** @type {any} */ bin, /** @type {number} */ scale) => {
+    const end = (/** @type {number | null} */ v) => (v === null ? "" : digits(v * scale, 3));
     const refused = /** @type {number[]} */ (Object.values(bin.refused)).reduce((a, b) => a + b, 0);
     return html`<b>${refused}</b> of ${bin.draws}<br /><span class="note">${end(bin.from)} to ${end(bin.to)}</span>`;
   };
@@ -82,5 +82,5 @@ function Refused(/** @type {{ rejections: any }} */ { rejections }) {
     <h2>Where the model refuses parameters</h2>
     <p>It refused ${rejections.prior_refused} of ${rejections.prior_draws} draws from the prior${rejections.region ? t`, most of them in one region (${probability(rejections.region.p)} by chance)` : ""}.</p>
     <${Table} label="Rejections by region of the prior" head=${[t`parameter`, t`lowest fifth`, t`second`, t`middle`, t`fourth`, t`highest fifth`]}
-      rows=${rejections.parameters.map((/** @type {any} */ q) => [`${q.name}${q.unit === "1" ? "" : ` ${q.unit}`}`, ...q.bins.map(cell)])} />`;
+      rows=${rejections.parameters.map((/** @type {any} */ q) => [titled(parameterName(q.name, q.unit), shown(q.unit).unit), ...q.bins.map((/** @type {any} */ bin) => cell(bin, shown(q.unit).scale))])} />`;
 }

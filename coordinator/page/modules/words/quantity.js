@@ -32,7 +32,7 @@ const spelt = (/** @type {string} */ unit) => unit.toLowerCase().replace(/^1\//,
  * @param {string | null | undefined} unit in SI
  */
 export function parameterName(name, unit) {
-  return words(unit && unit !== "1" ? name.replace(new RegExp(`_${spelt(unit)}(?=\\.[^.]*$|$)`), "") : name);
+  return words(unit && unit !== "1" ? name.replace(new RegExp(`_${spelt(unit)}(?=\\.[^.]*$|$)`), "") : name).replaceAll(".", ": ");
 }
 
 /** A number that a person typed, with a point or a comma; null where it is none. */

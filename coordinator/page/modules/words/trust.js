@@ -1,7 +1,7 @@
 // How far to trust a calibration, in one line for each question: the sampler, the data, the priors, the predictions.
 
 import { t } from "../language/language.js";
-import { channelName } from "./quantity.js";
+import { channelName, parameterName } from "./quantity.js";
 
 /** A probability below which chance does not explain what is seen. */
 const LEVEL = 0.01;
@@ -9,6 +9,8 @@ const LEVEL = 0.01;
 const LITTLE = 0.1;
 
 /** @typedef {{ question: string, level: "good" | "fair" | "poor", text: string }} Judgement */
+
+const named = (/** @type {any} */ { name, unit }) => parameterName(name, unit);
 
 /** `a, b and c`, of many the first. */
 function list(/** @type {string[]} */ names) {
@@ -49,8 +51,8 @@ function residuals(/** @type {any} */ { channels }) {
 /** @returns {Judgement} */
 function priors(/** @type {any} */ { parameters }) {
   const question = t`Do the data agree with the priors?`;
-  const conflict = parameters.filter((/** @type {any} */ q) => q.conflict_p !== null && q.conflict_p < LEVEL).map((/** @type {any} */ q) => q.name);
-  const bound = parameters.filter((/** @type {any} */ q) => q.at_bound).map((/** @type {any} */ q) => q.name);
+  const conflict = parameters.filter((/** @type {any} */ q) => q.conflict_p !== null && q.conflict_p < LEVEL).map(named);
+  const bound = parameters.filter((/** @type {any} */ q) => q.at_bound).map(named);
   if (conflict.length > 0) return { question, level: "poor", text: t`they contradict the prior of ${list(conflict)}` };
   if (bound.length > 0) return { question, level: "fair", text: bound.length === 1 ? t`${list(bound)} lies at a bound of the prior: look whether it is meant` : t`${list(bound)} lie at a bound of the prior: look whether it is meant` };
   return { question, level: "good", text: t`no parameter is far out in its prior` };
@@ -59,7 +61,7 @@ function priors(/** @type {any} */ { parameters }) {
 /** @returns {Judgement} */
 function informed(/** @type {any} */ { parameters }) {
   const question = t`Do the data determine the parameters?`;
-  const little = parameters.filter((/** @type {any} */ q) => q.contraction !== null && q.contraction < LITTLE).map((/** @type {any} */ q) => q.name);
+  const little = parameters.filter((/** @type {any} */ q) => q.contraction !== null && q.contraction < LITTLE).map(named);
   return little.length === 0
     ? { question, level: "good", text: t`each is known better than before` }
     : { question, level: "fair", text: t`they tell little of ${list(little)}: its value is that of the prior` };

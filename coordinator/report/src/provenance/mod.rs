@@ -176,8 +176,8 @@ mod tests {
     }
 
     #[test]
-    fn the_model_s_limits_and_the_likelihood_s_departure_are_always_stated() {
+    fn the_limits_of_the_model_are_stated() {
         let notes = provenance(&fixture::calibration()).notes.join(" ");
-        assert!(notes.contains("Grousers are not modelled here") && notes.contains("lack 1/sigma"));
+        assert!(notes.contains("no grousers are declared"), "{notes}");
     }
 }

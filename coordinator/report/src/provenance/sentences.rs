@@ -8,6 +8,7 @@ use shared::parameters::noise_parameter;
 
 use crate::flag::model_limit::model_limits;
 use crate::flag::unsettled_run::unsettled;
+use crate::story::wrong::size;
 use inference::point_estimate::StopReason;
 use result::finished_calibration::FinishedCalibration;
 use result::table::comparison::Comparison;
@@ -96,13 +97,7 @@ fn reason(stop: StopReason) -> &'static str {
 
 /// Lists the errors by channel: `2.8 N in drawbar pull and 9.0 mm in sinkage`.
 fn misses(table: &ErrorTable) -> String {
-    let miss = |c: Channel| {
-        Some(format!(
-            "{} in {}",
-            ShownUnit::new(c).size(table.channel(c)?.rmse),
-            c.words()
-        ))
-    };
+    let miss = |c: Channel| Some(format!("{} in {}", size(c, table.channel(c)?.rmse), c.words()));
     number::list(&Channel::ALL.into_iter().filter_map(miss).collect::<Vec<_>>())
 }
 
@@ -335,7 +330,7 @@ pub(super) fn notes(calibration: &FinishedCalibration) -> Vec<String> {
             .values()
             .any(WheelGeometry::has_grousers)
     {
-        notes.push("Grousers are not modelled here: each wheel has its own wheel_radius_m.NAME.".to_owned());
+        notes.push("The wheels are smooth rims: no grousers are declared.".to_owned());
     }
     notes.extend(
         model_limits(&calibration.spec)
@@ -343,6 +338,5 @@ pub(super) fn notes(calibration: &FinishedCalibration) -> Vec<String> {
             .map(|note| format!("{note}.")),
     );
     notes.extend(unsettled(calibration).map(|note| format!("{note}.")));
-    notes.push("Likelihood: normalised Gaussian; the source paper's Eq. 13-15 lack 1/sigma.".into());
     notes
 }

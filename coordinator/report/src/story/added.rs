@@ -348,7 +348,7 @@ mod tests {
         );
         let home = overview(&study).list_item(None).verdict.unwrap().open.unwrap();
         assert!(home.starts_with(RIVAL) && home.contains(RUN), "{home}");
-        let printed = terminal::story(&story, std::path::Path::new("out/sand"), true);
+        let printed = terminal::story(&story, std::path::Path::new("out/sand"), terminal::WIDTH);
         let printed = printed.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(printed.contains(RIVAL) && printed.contains(RUN), "{printed}");
         assert!(document::document(&study).contains(RIVAL));

@@ -11,7 +11,7 @@ mod missing;
 mod next;
 mod pattern;
 mod rig;
-mod wrong;
+pub(crate) mod wrong;
 
 use next::Facts;
 use result::finished_calibration::FinishedCalibration;

@@ -256,8 +256,8 @@ fn beaten(channel: Channel, both: BesideInterpolation, is_repeated: bool) -> Str
     format!(", and {between} by {model} where interpolation has {interpolation}")
 }
 
-/// Formats an error, for example `11.7 N`.
-fn size(channel: Channel, si: f64) -> String {
+/// Formats an error, for example `11.7 N`, with the same digits wherever the error stands.
+pub(crate) fn size(channel: Channel, si: f64) -> String {
     let unit = ShownUnit::new(channel);
     let decimals = if unit.factor * si < 1.0 { 2 } else { 3 };
     format!(

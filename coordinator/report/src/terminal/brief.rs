@@ -3,13 +3,14 @@
 use super::calibration::headline;
 use super::campaign::digitised;
 use super::ledger::brief_ledger;
-use super::models::models;
+use super::models::brief_models;
 use crate::diagnosis::diagnostics;
 use crate::flag::study::missed_modes;
 use result::flag::FlagKind;
 use result::study::Study;
 
-/// Returns the cautions, the compared models, the error ledger, and a line for each calibration that is not in the ledger.
+/// Returns the cautions, the most probable of compared models, the error ledger, and a line for each calibration that is not in the ledger.
+/// Where the table of models has the errors already, the ledger follows only if something was added to the chosen model.
 pub fn brief(study: &Study) -> String {
     let is_in_ledger = |id: i64| study.ledger().any(|line| line.row.id == id);
     let beside = study
@@ -17,8 +18,12 @@ pub fn brief(study: &Study) -> String {
         .filter(|calibration| !is_in_ledger(calibration.row.id));
     let mut text: String = beside.map(|calibration| headline(calibration) + "\n").collect();
     text += &cautions(study);
-    text += &models(study);
-    text + &brief_ledger(study)
+    let models = brief_models(study);
+    text += &models;
+    match models.is_empty() || study.ledger().count() > 1 {
+        true => text + &brief_ledger(study),
+        false => text,
+    }
 }
 
 /// Says that the measurements were read off figures, and why the numbers of the study and of its current model may be wrong.

@@ -2,7 +2,7 @@
 
 use shared::experiment::Campaign;
 
-use super::column::labelled;
+use super::column::{LABEL, labelled};
 use result::words::campaign::CampaignWords;
 
 /// Lists the citation, whether the rows were digitised, the methods and the doubts.
@@ -20,8 +20,8 @@ pub(super) fn campaign(campaign: &Campaign) -> String {
     text
 }
 
-/// Says that the rows were digitised; empty if they were not.
+/// Says in one line that the rows were digitised; empty if they were not.
 pub(super) fn digitised(campaign: &Campaign) -> String {
     let digitised = CampaignWords::from(campaign).digitised;
-    digitised.map_or_else(String::new, |words| labelled("data:", &words))
+    digitised.map_or_else(String::new, |words| format!("{:LABEL$}{words}\n", "data:"))
 }

@@ -12,12 +12,14 @@ use result::finished_calibration::FinishedCalibration;
 use result::study::Study;
 use result::table::coverage::Coverage;
 use result::table::errors::ErrorTable;
-use result::table::ledger::LedgerRow;
+use result::table::ledger::{LedgerLine, LedgerRow};
 use result::words::data_channel::ShownUnit;
 use result::words::number;
 
 /// Minimum width of the column of models.
 const MODEL: usize = 20;
+/// Maximum number of rows of a brief ledger, without that of interpolation.
+const BRIEF: usize = 3;
 /// Name of the line of the current model's corrected predictions.
 const CORRECTED: &str = "current, corrected";
 /// Name of the line of the combined predictions.
@@ -34,21 +36,41 @@ pub(super) fn ledger(study: &Study) -> String {
         .and_then(|summary| summary.holdout);
     let current = study.current().map(FinishedCalibration::comparison);
     let corrected = current.and_then(|comparison| comparison.corrected_holdout.as_ref());
-    let text = table(study, &[(CORRECTED, corrected), (COMBINED, combined.as_ref())]);
+    let lines = study.ledger_lines();
+    let text = table(
+        study,
+        &lines,
+        &[(CORRECTED, corrected), (COMBINED, combined.as_ref())],
+    );
     match text.is_empty() {
         true => text,
         false => text + &labelled("noise:", &study.fixed_sigmas().words()),
     }
 }
 
-/// Returns the ledger of a study with its models and interpolation only.
+/// Returns the ledger in few lines: of a long one, the first and the last model, on the holdout runs if there are any.
 pub(super) fn brief_ledger(study: &Study) -> String {
-    table(study, &[])
+    let mut lines = study.ledger_lines();
+    let rows = |lines: &[LedgerLine]| lines.iter().map(|line| line.rows.len()).sum::<usize>();
+    if rows(&lines) > BRIEF {
+        let mut all = lines.iter().flat_map(|line| &line.rows);
+        let has_holdout = all.any(|row| row.usage == RunUse::Holdout);
+        let shown = if has_holdout { RunUse::Holdout } else { RunUse::Fit };
+        lines
+            .iter_mut()
+            .for_each(|line| line.rows.retain(|row| row.usage == shown));
+    }
+    if rows(&lines) > BRIEF {
+        lines.drain(1..lines.len() - 1);
+        // A mark compares a line with one that is left out.
+        let mut all = lines.iter_mut().flat_map(|line| &mut line.rows);
+        all.by_ref().for_each(|row| row.worse.clear());
+    }
+    table(study, &lines, &[])
 }
 
-/// Tabulates the ledger, with further `predictions` of the holdout runs by their names.
-fn table(study: &Study, predictions: &[(&str, Option<&ErrorTable>)]) -> String {
-    let lines = study.ledger_lines();
+/// Tabulates lines of the ledger, with further `predictions` of the holdout runs by their names.
+fn table(study: &Study, lines: &[LedgerLine], predictions: &[(&str, Option<&ErrorTable>)]) -> String {
     let measured = |channel: &Channel| {
         let mut rows = lines.iter().flat_map(|line| &line.rows);
         rows.any(|row| row.errors.channel(*channel).is_some())
@@ -80,7 +102,7 @@ fn table(study: &Study, predictions: &[(&str, Option<&ErrorTable>)]) -> String {
             cell(row.coverage, |c| format!("{} of {}", c.inside, c.total))
         });
     let mut text = table.header();
-    for line in &lines {
+    for line in lines {
         let models = std::iter::once(line.model.as_str()).chain(std::iter::repeat(""));
         text.extend(
             models

@@ -3,7 +3,8 @@
 //! # Layout
 //! - `specification`: a job before it runs. `campaign`: the source of its measurements. `status`: the state of a calibration.
 //! - `list`: all calibrations, with what their studies found.
-//! - `brief`: a study in a few lines; `story`: what is wrong, what is missing, what next; `ending`: where the files are.
+//! - `brief`: a study in a few lines; `story`: what is wrong, what is missing, what next; `ending`: where the files are; `run_end`: all
+//!   three in at most 15 lines.
 //! - `study`: the complete text of a study; `models`: its compared models; `ledger`: the errors of its calibrations.
 //! - `calibration`: one calibration; `comparison`: its rows and errors; `diagnostics`: its diagnostics.
 //! - `followed`: a campaign that is followed.
@@ -27,6 +28,7 @@ mod list;
 mod models;
 mod prediction;
 mod rig;
+mod run_end;
 mod specification;
 mod status;
 mod story;
@@ -35,6 +37,7 @@ mod table;
 mod validation;
 
 pub use brief::brief;
+pub use column::{WIDTH, labelled_to};
 pub use comparison::{comparison, groups};
 pub use decision::decision;
 pub use diagnostics::diagnostics;
@@ -43,6 +46,7 @@ pub use followed::followed;
 pub use list::list;
 pub use prediction::{prediction, prediction_csv};
 pub use rig::rig;
+pub use run_end::run_end;
 pub use specification::specification;
 pub use status::status_table;
 pub use story::story;

@@ -1,36 +1,46 @@
 //! The story of a study as the last lines of its text: what is wrong, what is missing, what to do next.
 
-use std::fmt::Write;
 use std::path::Path;
 
-use super::column::{LABEL, labelled};
+use super::column::{LABEL, labelled_to};
 use super::ending::quoted;
 use crate::story::{NextStep, Story};
-
-/// Maximum number of steps in a brief story.
-const MAX_STEPS: usize = 2;
 
 /// Returns the story, with the commands of its steps.
 ///
 /// # Arguments
 /// - `folder`: the folder of the study, which also contains effect files.
-/// - `is_brief`: whether to show only the first step and the next one that has a command.
-pub fn story(story: &Story, folder: &Path, is_brief: bool) -> String {
-    let place = format!("--out {}", quoted(&folder.display().to_string()));
-    let model = story.model.as_ref();
-    let mut text = model.map_or_else(String::new, |model| labelled("model:", model));
-    text += &(labelled("wrong:", &story.wrong.text) + &labelled("missing:", &story.missing.text));
-    let steps = story.next.steps.iter().enumerate();
-    let shown = steps.filter(|(number, step)| !is_brief || *number == 0 || step.command.is_some());
-    let max_steps = if is_brief { MAX_STEPS } else { usize::MAX };
-    for (number, step) in shown.take(max_steps) {
+/// - `width`: number of characters in a line.
+pub fn story(story: &Story, folder: &Path, width: usize) -> String {
+    let sentences = sentences(story);
+    let mut text: String = sentences
+        .iter()
+        .map(|(label, sentence)| labelled_to(width, label, sentence))
+        .collect();
+    for (number, step) in story.next.steps.iter().enumerate() {
         let label = if number == 0 { "next:" } else { "  then:" };
-        text += &labelled(label, &step.text);
-        if let Some(command) = command(step, folder) {
-            let _ = writeln!(text, "{:LABEL$}  coordinator {command} {place}", "");
-        }
+        text += &labelled_to(width, label, &step.text);
+        text += &command_line(step, folder);
     }
     text
+}
+
+/// Returns the answers of a story with their labels: the model, what is wrong, what is missing.
+pub(super) fn sentences(story: &Story) -> Vec<(&'static str, &str)> {
+    let model = story.model.iter().map(|model| ("model:", model.as_str()));
+    let answers = [
+        ("wrong:", story.wrong.text.as_str()),
+        ("missing:", story.missing.text.as_str()),
+    ];
+    model.chain(answers).collect()
+}
+
+/// Returns the line of a step's command, which stays whole so that it can be copied; empty without a command.
+pub(super) fn command_line(step: &NextStep, folder: &Path) -> String {
+    let place = quoted(&folder.display().to_string());
+    command(step, folder).map_or_else(String::new, |command| {
+        format!("{:LABEL$}  coordinator {command} --out {place}\n", "")
+    })
 }
 
 /// Returns the command of a step, with the path of its effect file in the folder.
@@ -60,21 +70,13 @@ mod tests {
         study
     }
 
-    fn printed(study: &Study) -> String {
-        story(&Story::current(study), Path::new("out/sand"), true)
-    }
-
-    #[test]
-    fn a_brief_story_has_the_first_step_and_one_more_with_a_command_and_the_whole_has_all() {
-        let study = searched();
-        assert!(!printed(&study).contains("make a plate test"));
-        let whole = story(&Story::current(&study), Path::new("out/sand"), false);
-        assert!(whole.contains("make a plate test"), "{whole}");
+    fn printed(study: &Study, width: usize) -> String {
+        story(&Story::current(study), Path::new("out/sand"), width)
     }
 
     #[test]
     fn the_three_lines_stand_in_order_and_fit_the_terminal() {
-        let text = printed(&searched());
+        let text = printed(&searched(), 80);
         let place = |words: &str| text.find(words).unwrap_or_else(|| panic!("{words} in\n{text}"));
         assert!(place("wrong:") < place("\nmissing:") && place("\nmissing:") < place("\nnext:"));
         assert!(text.contains("coordinator extend 1 --effect slip_sinkage --out out/sand"));
@@ -82,6 +84,9 @@ mod tests {
         for line in sentences {
             assert!(line.chars().count() <= 80, "{line}");
         }
+        let wide = printed(&searched(), 120);
+        assert!(wide.lines().any(|line| line.chars().count() > 80), "{wide}");
+        assert!(text.contains("make a plate test"), "{text}");
     }
 
     #[test]
@@ -91,7 +96,7 @@ mod tests {
             name: "anything.toml".into(),
             text: "name = \"shear_slip_step\"\n".into(),
         });
-        let text = printed(&study);
+        let text = printed(&study, 80);
         let command = "extend 1 --effect-file out/sand/shear_slip_step.toml --out out/sand";
         assert!(text.contains(command), "{text}");
     }

@@ -1,0 +1,170 @@
+// Predictions of conditions that were not measured: sliders, the curve that follows them, and the probability of a statement.
+
+import { PredictionChart } from "../chart/prediction_chart.js";
+import { html, useEffect, useMemo, useState } from "../html.js";
+import { t } from "../language/language.js";
+import { Failure, Pending } from "../part/message.js";
+import { Table } from "../part/table.js";
+import * as table from "../prediction_table.js";
+import { path, predict } from "../rest/routes.js";
+import { useAnswer } from "../rest/use_answer.js";
+import { loadWords, slipWords, speedWords } from "../words/condition.js";
+import { rimSpeed } from "../words/group.js";
+import { channelOf, quantityName, shownQuantities } from "../words/predicted_quantity.js";
+import { capital, digits, minus, numberOf, probability, shown, titled } from "../words/quantity.js";
+
+/** Draws of the grid: enough for a curve to follow the sliders; what stands still is computed with all draws. */
+const GRID_DRAWS = 40;
+/** So long the sliders stand still before their place is computed [ms]. */
+const REST_MS = 350;
+/** Runs whose load and speed differ by less are near a condition. */
+const NEAR = 0.06;
+const CONDITIONS = /** @type {const} */ (["slip", "load", "speed"]);
+
+/** @param {{ study: any, model: any }} properties */
+export function Predict({ study, model }) {
+  const { answer: comparison, error } = useAnswer(model ? path.comparison(model.id) : null);
+  if (!model) return html`<p class="empty">No calibration of this study is finished yet.</p>`;
+  if (!comparison) return html`<${Pending} answer=${comparison} error=${error} what="the measured runs" />`;
+  const fitted = comparison.rows.filter((/** @type {any} */ row) => row.use === "fit");
+  if (fitted.length === 0) return html`<p class="empty">No wheel run is fitted, so that nothing tells what a wheel would do.</p>`;
+  return html`<${Calculator} key=${model.id} study=${study} model=${model} rows=${comparison.rows} fitted=${fitted} />`;
+}
+
+function Calculator(/** @type {{ study: any, model: any, rows: any[], fitted: any[] }} */ { study, model, rows, fitted }) {
+  const ranges = useMemo(() => table.fittedRanges(fitted), [fitted]);
+  const reach = useMemo(() => table.reach(ranges), [ranges]);
+  const isRim = useMemo(() => table.holdsRim(fitted), [fitted]);
+  const wheels = [...new Set(fitted.map((row) => row.wheel))];
+  const [place, setPlace] = useState(/** @type {table.Place} */ ({
+    ...table.middle(fitted, ranges), wheel: wheels[0] }));
+  const [chosen, setChosen] = useState("drawbar_pull_n");
+  const [statement, setStatement] = useState(/** @type {{ sign: string, limit: string }} */ ({ sign: ">", limit: "" }));
+  const isRolling = model.model_kind === "scm" || study.model_kind === "scm";
+  const [isAsked, setAsked] = useState(!isRolling);
+  const grid = useGrid(isRolling ? null : model.id, place.wheel, reach, isRim);
+  const limit = numberOf(statement.limit);
+  const rest = useAtRest(isAsked ? model.id : null, place, reach, isRim, quantity(chosen, statement.sign, limit, grid.quantities), isRolling);
+  const isMeasured = (/** @type {{ name: string }} */ { name }) => channelOf(name) === null || rows.some((row) => row.channel === channelOf(name));
+  const quantities = (rest.quantities.length > 0 ? rest.quantities : grid.quantities).filter(isMeasured);
+  const found = quantities.find((q) => q.name === chosen) ?? quantities[0];
+  const source = rest.table ?? grid.table;
+  const points = useMemo(() => (source && found ? table.curve(source, found.name, place) : []), [source, found?.name, place]);
+  const spread = table.atSlip(points, place.slip);
+  const here = spread && { ...spread, slip: place.slip };
+  const outside = table.beyond(place, ranges);
+  const near = useMemo(() => (found && channelOf(found.name) ? nearRuns(rows, place, isRim, channelOf(found.name)) : []), [rows, place, found?.name]);
+  const set = (/** @type {Partial<table.Place>} */ change) => setPlace({ ...place, ...change });
+  const labels = { slip: t`slip`, load: t`wheel load`, speed: isRim ? t`speed of the rim` : t`sled speed` };
+  const words = { slip: slipWords, load: loadWords, speed: speedWords };
+  return html`
+    <p class="note">What the calibrated models predict for a condition that nobody measured: mean and 90 % of new measurements, over all models of the study by their evidence. Straight travel on level ground.</p>
+    <div class="setting">
+      <div class="controls">
+        ${wheels.length > 1 && html`<p><label>Wheel <select onChange=${(/** @type {any} */ e) => set({ wheel: e.target.value })}>${wheels.map((wheel) => html`<option value=${wheel} selected=${wheel === place.wheel}>${wheel}</option>`)}</select></label></p>`}
+        ${CONDITIONS.map((key) => reach[key][1] > reach[key][0] && html`<${Slider} key=${key} id=${`predict-${key}`} label=${labels[key]} text=${words[key](place[key])} value=${place[key]} range=${reach[key]} isBeyond=${outside.includes(key)} move=${(/** @type {number} */ value) => set({ [key]: value })} />`)}
+        <p class=${`reach ${outside.length > 0 ? "beyond" : ""}`} role="status">${outside.length === 0 ? t`Within the fitted range.`
+          : t`Beyond the fitted range in ${outside.map((key) => `${labels[key]} (${words[key](ranges[key][0])}${t` to `}${words[key](ranges[key][1])})`).join(", ")}: nothing tells whether the model still holds there.`}</p>
+        <p><label>Quantity <select onChange=${(/** @type {any} */ e) => { setChosen(e.target.value); setStatement({ ...statement, limit: "" }); }}>${quantities.map(({ name }) => html`<option value=${name} selected=${name === found?.name}>${quantityName(name)}</option>`)}</select></label></p>
+        ${found && html`<${Statement} found=${found} statement=${statement} change=${setStatement} answer=${rest.statement} isBusy=${rest.isBusy} isNumber=${limit !== null} />`}
+      </div>
+      <div>
+        ${isRolling && !isAsked && html`<p>This model rolls over terrain: a prediction takes minutes. <button type="button" onClick=${() => setAsked(true)}>Predict here</button></p>`}
+        <${Failure} error=${rest.error ?? grid.error} />
+        ${found && points.length > 0
+          ? html`<${PredictionChart} quantity=${found} points=${points} here=${here} fitted=${ranges.slip} measured=${near} name=${study.name} />`
+          : (isAsked && !rest.error && html`<p class="empty" aria-busy="true">The program computes the curves …</p>`)}
+        ${source && found && html`<${Values} source=${source} quantities=${quantities} place=${place} />
+          <p class="note" role="status">${rest.table ? t`Computed at this condition with ${rest.draws} draws.` : t`Interpolated between computed conditions; it is computed when the sliders rest.`}</p>`}
+      </div>
+    </div>`;
+}
+
+/** A statement as the service reads it, in SI; null where it is not complete. */
+function quantity(/** @type {string} */ name, /** @type {string} */ sign, /** @type {number | null} */ limit, /** @type {{ name: string, unit: string }[]} */ all) {
+  const unit = all.find((q) => q.name === name)?.unit;
+  return limit === null || unit === undefined ? null : `${name} ${sign} ${limit / shown(unit).scale}`;
+}
+
+/** The grid of a wheel, asked once. */
+function useGrid(/** @type {number | null} */ id, /** @type {string} */ wheel, /** @type {table.Ranges} */ reach, /** @type {boolean} */ isRim) {
+  const [state, setState] = useState(/** @type {{ table: table.Table | null, quantities: any[], error: any }} */ ({ table: null, quantities: [], error: null }));
+  useEffect(() => {
+    if (id === null) return undefined;
+    let isOver = false;
+    const { plan, fill } = table.gridPlan(wheel, reach, isRim);
+    predict(id, { plan, draws: GRID_DRAWS }).then(
+      ({ runs }) => isOver || setState({ table: fill(runs), quantities: quantitiesOf(runs), error: null }),
+      (error) => isOver || setState({ table: null, quantities: [], error }),
+    );
+    return () => void (isOver = true);
+  }, [id, wheel]);
+  return state;
+}
+
+/** The curve at a place where the sliders rest, and the probability of a statement there. */
+function useAtRest(/** @type {number | null} */ id, /** @type {table.Place} */ place, /** @type {table.Ranges} */ reach, /** @type {boolean} */ isRim, /** @type {string | null} */ statement, /** @type {boolean} */ isRolling) {
+  const nothing = { key: "", of: "", table: /** @type {table.Table | null} */ (null), quantities: /** @type {any[]} */ ([]), statement: /** @type {any} */ (null), draws: 0, error: /** @type {any} */ (null) };
+  const [state, setState] = useState(nothing);
+  const of = [id, place.wheel, place.load, place.speed].join(" ");
+  const key = [of, place.slip, statement].join(" ");
+  useEffect(() => {
+    if (id === null) return undefined;
+    let isOver = false;
+    const timer = setTimeout(() => {
+      const { plan, fill, here } = table.curvePlan(place, reach, isRim);
+      predict(id, { plan, statements: statement === null ? [] : [statement], ...(isRolling ? { draws: 20 } : {}) }).then(
+        ({ runs, draws }) => isOver || setState({ key, of, table: fill(runs), quantities: quantitiesOf(runs), statement: runs[here].statements[0] ?? null, draws, error: null }),
+        (error) => isOver || setState({ ...nothing, key, of, error }),
+      );
+    }, REST_MS);
+    return () => {
+      isOver = true;
+      clearTimeout(timer);
+    };
+  }, [key]);
+  if (state.key === key) return { ...state, isBusy: false };
+  // The curve of a load and a speed holds at every slip; a statement does not.
+  return state.of === of ? { ...state, statement: null, isBusy: true } : { ...nothing, quantities: state.quantities, isBusy: true };
+}
+
+const quantitiesOf = (/** @type {any[]} */ runs) => shownQuantities(runs.find((run) => run.quantities.length > 0) ?? { quantities: [] });
+
+/** Runs that were measured near a condition. */
+function nearRuns(/** @type {any[]} */ rows, /** @type {table.Place} */ { wheel, load, speed }, /** @type {boolean} */ isRim, /** @type {string | null} */ channel) {
+  const isNear = (/** @type {number} */ a, /** @type {number} */ b) => Math.abs(a - b) <= NEAR * b;
+  return rows.filter((row) => row.channel === channel && row.wheel === wheel && isNear(row.wheel_load_n, load) && isNear(isRim ? rimSpeed(row) : row.sled_speed_m_s, speed));
+}
+
+function Slider(/** @type {{ id: string, label: string, text: string, value: number, range: [number, number], isBeyond: boolean, move: (value: number) => void }} */ { id, label, text, value, range, isBeyond, move }) {
+  return html`
+    <div class="slider">
+      <label for=${id}>${label}</label>
+      <span class=${isBeyond ? "value beyond" : "value"} aria-hidden="true">${text}</span>
+      <input id=${id} type="range" step="any" min=${range[0]} max=${range[1]} value=${value} aria-valuetext=${text} onInput=${(/** @type {any} */ event) => move(Number(Number(event.target.value).toPrecision(3)))} />
+    </div>`;
+}
+
+/** `P(drawbar pull > 12 N)`: typed in the unit that is shown. */
+function Statement(/** @type {{ found: any, statement: any, change: (to: any) => void, answer: any, isBusy: boolean, isNumber: boolean }} */ { found, statement, change, answer, isBusy, isNumber }) {
+  const { unit } = shown(found.unit);
+  const isOpen = statement.limit.trim() === "";
+  return html`
+    <p class="actions" role="group" aria-label="A statement about a new measurement">
+      <span class="whole">How probable is ${quantityName(found.name)}</span>
+      <select aria-label="above or below" onChange=${(/** @type {any} */ e) => change({ ...statement, sign: e.target.value })}>${[">", "<"].map((sign) => html`<option value=${sign} selected=${sign === statement.sign}>${sign}</option>`)}</select>
+      <input size="7" inputmode="decimal" aria-label=${titled(t`limit`, unit)} aria-invalid=${!isOpen && !isNumber} value=${statement.limit} onInput=${(/** @type {any} */ e) => change({ ...statement, limit: e.target.value })} />
+      <span>${unit === "1" ? "" : unit}?</span></p>
+    ${!isOpen && isNumber && html`<p role="status" class="answer">${answer ? html`<b>P ${probability(answer.measurement ?? answer.models ?? 0)}</b> <span class="note">${answer.measurement === null ? t`by the parameters alone: the noise is not known` : t`that a new measurement says so`}</span>` : isBusy ? html`<span class="note">is being computed …</span>` : ""}</p>`}`;
+}
+
+/** Every quantity at the chosen condition. */
+function Values(/** @type {{ source: table.Table, quantities: any[], place: table.Place }} */ { source, quantities, place }) {
+  const rows = quantities.map(({ name, unit }) => {
+    const { unit: word, scale } = shown(unit);
+    const spread = table.atSlip(table.curve(source, name, place), place.slip);
+    const value = (/** @type {number | undefined} */ v) => (v === undefined ? "–" : minus(digits(v * scale)));
+    return [capital(titled(quantityName(name), word)), value(spread?.mean), spread ? `${value(spread.low)}${t` to `}${value(spread.high)}` : "–"];
+  });
+  return html`<${Table} label="Predictions at the chosen condition" head=${[t`at slip ${slipWords(place.slip)}`, t`mean`, t`90 % of new measurements`]} rows=${rows} numbers=${[1, 2]} />`;
+}

@@ -1,0 +1,21 @@
+// What a prediction gives, as words: the channels, and what follows from them.
+
+import { t } from "../language/language.js";
+import { channelName, words } from "./quantity.js";
+
+const CHANNELS = /** @type {Record<string, string>} */ ({ drawbar_pull_n: "drawbar_pull", torque_n_m: "torque", sinkage_m: "sinkage", lateral_force_n: "lateral_force" });
+const DERIVED = /** @type {Record<string, string>} */ ({
+  traction_coefficient: t`pull over load`, power_number: t`power number`, tractive_efficiency: t`tractive efficiency`,
+  balanced_slope_deg: t`slope that the pull balances`, energy_j_m: t`energy for a metre`,
+});
+/** What a condition states already, or what only a slope has. */
+const HIDDEN = ["slip", "wheel_load_n", "sled_speed_m_s", "slip_angle_deg", "gravity_m_s2", "slope_deg", "stuck", "net_pull_n"];
+
+/** The quantities of a predicted run that are shown, with their units in SI. @returns {{ name: string, unit: string }[]} */
+export const shownQuantities = (/** @type {any} */ run) => run.quantities.filter((/** @type {any} */ q) => !HIDDEN.includes(q.name)).map((/** @type {any} */ q) => ({ name: q.name, unit: q.unit }));
+
+/** The name of a quantity as words, without its unit. */
+export const quantityName = (/** @type {string} */ name) => (CHANNELS[name] ? channelName(CHANNELS[name]) : DERIVED[name] ?? words(name));
+
+/** The channel that a quantity is; null of what follows from channels. */
+export const channelOf = (/** @type {string} */ name) => CHANNELS[name] ?? null;

@@ -1,0 +1,73 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { atSlip, beyond, curve, curvePlan, fittedRanges, gridPlan, holdsRim, reach } from "../modules/prediction_table.js";
+
+const run = (slip, load, speed) => ({ slip, wheel_load_n: load, sled_speed_m_s: speed });
+/** Answers of a service whose quantity is a function of the condition. */
+const answered = (plan, of) => plan.trim().split("\n").slice(1).map((line) => {
+  const [, slip, load, speed] = line.split(",").map(Number);
+  const mean = of(slip, load, speed);
+  return { quantities: [{ name: "q", models_mean: mean, models: [0, 0], models_measurement: [mean - 1, mean + 1] }] };
+});
+const near = (a, b, within = 1e-9) => assert.ok(Math.abs(a - b) <= within, `${a} is not ${b}`);
+
+test("a rig that holds the rim has the same rim speed at every slip", () => {
+  const rim = [run(0.1, 90, 0.018), run(0.5, 90, 0.01), run(0.2, 90, 0.016)];
+  assert.equal(holdsRim(rim), true);
+  assert.equal(holdsRim([run(0.1, 90, 0.02), run(0.5, 90, 0.02)]), false);
+  const { speed } = fittedRanges(rim);
+  near(speed[0], 0.02);
+  near(speed[1], 0.02);
+});
+
+test("the sliders reach beyond the fitted runs, and what lies there is named", () => {
+  const fitted = fittedRanges([run(0.1, 60, 0.02), run(0.5, 120, 0.02)]);
+  const wide = reach(fitted);
+  assert.ok(wide.slip[0] === 0 && wide.slip[1] === 0.7 && wide.load[0] < 60 && wide.load[1] > 120);
+  assert.deepEqual(wide.speed, [0.02, 0.02]);
+  assert.deepEqual(beyond({ wheel: "w", slip: 0.5, load: 60, speed: 0.02 }, fitted), []);
+  assert.deepEqual(beyond({ wheel: "w", slip: 0.6, load: 50, speed: 0.02 }, fitted), ["slip", "load"]);
+});
+
+test("a grid gives its own values back, and parabolas of load and speed between them", () => {
+  const ranges = { slip: [0, 0.7], load: [50, 150], speed: [0.01, 0.04] };
+  const { plan, fill } = gridPlan("w", ranges, false);
+  const of = (slip, load, speed) => slip * 10 + 0.001 * load * load - 100 * speed;
+  const table = fill(answered(plan, of));
+  const points = curve(table, "q", { load: 83, speed: 0.017 });
+  for (const { slip, mean, low, high } of points) {
+    near(mean, of(slip, 83, 0.017), 1e-9);
+    near(high - low, 2);
+  }
+  near(atSlip(points, 0.33).mean, of(0.33, 83, 0.017), 1e-9);
+  assert.equal(atSlip(points, 0.8), null);
+});
+
+test("a curve is monotone between monotone points and goes through the slip that was asked for", () => {
+  const ranges = { slip: [0, 0.7], load: [90, 90], speed: [0.02, 0.02] };
+  const { plan, fill, here } = curvePlan({ wheel: "w", slip: 0.123, load: 90, speed: 0.02 }, ranges, true);
+  const of = (slip) => 20 * (1 - Math.exp(-slip / 0.05));
+  const table = fill(answered(plan, of));
+  assert.equal(table.slips[here], 0.123);
+  // The sled falls behind the rim.
+  near(Number(plan.split("\n")[here + 1].split(",")[3]), 0.02 * (1 - 0.123));
+  const points = curve(table, "q", { load: 90, speed: 0.02 });
+  near(atSlip(points, 0.123).mean, of(0.123), 1e-9);
+  let last = -Infinity;
+  for (let slip = 0; slip <= 0.7; slip += 0.01) {
+    const { mean } = atSlip(points, slip);
+    assert.ok(mean >= last, `falls at ${slip}`);
+    last = mean;
+  }
+});
+
+test("a slip that the model refuses leaves a gap", () => {
+  const ranges = { slip: [0, 0.7], load: [90, 90], speed: [0.02, 0.02] };
+  const { plan, fill } = gridPlan("w", ranges, false);
+  const runs = answered(plan, (slip) => slip);
+  runs[0] = { quantities: [] };
+  const points = curve(fill(runs), "q", { load: 90, speed: 0.02 });
+  assert.equal(points.length, 10);
+  assert.equal(atSlip(points, 0), null);
+});

@@ -1,0 +1,120 @@
+//! The end of `coordinator run`: a study in few lines.
+
+use std::path::Path;
+
+use super::column::labelled_within;
+use super::ending::ending;
+use super::story::{command_line, sentences};
+use crate::story::Story;
+
+/// Maximum number of lines.
+const LINES: usize = 15;
+/// Maximum number of them before the story.
+const TABLES: usize = 8;
+
+/// Returns the tables of a study, its story, and where its files are, in at most [`LINES`] lines. Sentences that are longer lose their last
+/// clauses.
+///
+/// # Arguments
+/// - `tables`: the text of `brief`.
+/// - `folder`: the folder of the study.
+/// - `width`: number of characters in a line.
+///
+/// Checked by `tests::an_end_has_at_most_fifteen_lines`.
+pub fn run_end(tables: &str, story: &Story, folder: &Path, width: usize) -> String {
+    let steps = &story.next.steps;
+    // The first step, and the command of the first one that has a command.
+    let command = steps.iter().find_map(|step| {
+        let line = command_line(step, folder);
+        (!line.is_empty()).then_some(line)
+    });
+    let command = command.unwrap_or_default();
+    let next = steps.first().map(|step| ("next:", step.text.as_str()));
+    let sentences: Vec<_> = sentences(story).into_iter().chain(next).collect();
+    let tables = first_lines(tables, width);
+    let ending = ending(folder).replacen('\n', "; more with --verbose\n", 1);
+    let others = [&tables, &command, &ending];
+    let taken: usize = others.iter().map(|text| text.lines().count()).sum();
+    let left = LINES.saturating_sub(taken);
+    let mut heights = vec![LINES; sentences.len()];
+    let written = |heights: &[usize]| -> Vec<String> {
+        let pairs = sentences.iter().zip(heights);
+        pairs
+            .map(|((label, text), &lines)| labelled_within(width, lines, label, text))
+            .collect()
+    };
+    let mut texts = written(&heights);
+    loop {
+        let now: Vec<usize> = texts.iter().map(|text| text.lines().count()).collect();
+        let longest = (0..now.len()).max_by_key(|&i| now[i]);
+        match longest.filter(|&i| now[i] > 1 && now.iter().sum::<usize>() > left) {
+            Some(i) => heights[i] = now[i] - 1,
+            None => break,
+        }
+        texts = written(&heights);
+    }
+    tables + &texts.concat() + &command + &ending
+}
+
+/// Returns the lines before the story, each within the width, because a terminal breaks longer ones between any two letters.
+fn first_lines(tables: &str, width: usize) -> String {
+    let lines = tables.lines().filter(|line| !line.is_empty()).take(TABLES);
+    lines
+        .map(|line| match line.chars().count() <= width {
+            true => format!("{line}\n"),
+            false => {
+                let head: String = line.chars().take(width.saturating_sub(4)).collect();
+                let whole = head.rsplit_once(' ').map_or(head.as_str(), |(before, _)| before);
+                format!("{whole} ...\n")
+            }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{fixture, terminal};
+    use result::study::Study;
+
+    fn printed(study: &Study, width: usize) -> String {
+        let story = Story::current(study);
+        run_end(&terminal::brief(study), &story, Path::new("out/sand"), width)
+    }
+
+    #[test]
+    fn an_end_has_at_most_fifteen_lines() {
+        let studies = [
+            fixture::grown(),
+            fixture::of_a_class(),
+            fixture::study(),
+            fixture::all_rejected().into(),
+        ];
+        for study in &studies {
+            for width in [60, 80, 120] {
+                let text = printed(study, width);
+                assert!(text.lines().count() <= LINES, "{text}");
+                let sentences = text.lines().filter(|line| !line.contains("coordinator "));
+                for line in sentences {
+                    assert!(line.chars().count() <= width, "{width}: {line}");
+                }
+                for label in ["wrong:", "missing:", "next:", "files:", "page:"] {
+                    assert!(text.contains(label), "{label} in\n{text}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_long_sentence_loses_lines_and_a_short_one_none() {
+        let study = fixture::grown();
+        let mut story = Story::current(&study);
+        story.missing.text = "one clause of many; ".repeat(60);
+        let text = run_end(&terminal::brief(&study), &story, Path::new("out"), 80);
+        assert!(text.lines().count() <= LINES && text.contains(" ...\n"), "{text}");
+        assert!(
+            text.contains(&story.next.steps[0].text[..20]),
+            "the step is there:\n{text}"
+        );
+    }
+}
