@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use farm_tests::workspace::{files, root, text};
 
 /// The folder and the name of every crate of the workspace.
-const CRATES: [(&str, &str); 23] = [
+const CRATES: [(&str, &str); 24] = [
     ("shared", "shared"),
     ("shared/formula", "formula"),
     ("shared/signal", "signal"),
@@ -40,7 +40,7 @@ const CRATES: [(&str, &str); 23] = [
 ];
 
 /// The dependencies that each crate may have on other crates of the workspace.
-const DIRECTION: [(&str, &str); 21] = [
+const DIRECTION: [(&str, &str); 22] = [
     ("shared/formula", ""),
     ("shared/signal", ""),
     ("shared/statistics", ""),
