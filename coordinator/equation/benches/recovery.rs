@@ -3,6 +3,8 @@
 //! The laws come from a generator that shares no code with the search: half of them are laws of the literature, half are random
 //! expressions. A law is decidable where its log Bayes factor over every shorter formula exceeds 3.
 
+#![expect(clippy::unwrap_used, reason = "a study may panic as tests do")]
+
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -36,10 +38,13 @@ impl Random {
     }
 }
 
+/// The value of a law by its variable and its parameters.
+type LawValue = Box<dyn Fn(f64, &[f64]) -> f64 + Sync + Send>;
+
 /// A generated law: its values by its parameters.
 struct Law {
     name: String,
-    value: Box<dyn Fn(f64, &[f64]) -> f64 + Sync + Send>,
+    value: LawValue,
     parameters: Vec<f64>,
 }
 

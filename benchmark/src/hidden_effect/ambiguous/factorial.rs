@@ -36,13 +36,16 @@ struct Trial {
     factorial: Course,
 }
 
+/// A way of choosing the runs of a campaign.
+type Way = fn(&Trial) -> &Course;
+
 /// Draws truths that the factorial can show, and prints how many runs each way needs to name them.
 pub fn run(count: u64, seed: u64) -> Result<(), StudyError> {
     let trials = each(count, |number| {
         trial(seed, number).inspect_err(|message| println!("failed: campaign {number}: {message}"))
     })?;
     println!("campaigns: {count}");
-    let ways: [(&str, fn(&Trial) -> &Course); 3] = [
+    let ways: [(&str, Way); 3] = [
         ("adaptive from 6", |trial| &trial.adaptive),
         ("random from 6", |trial| &trial.random),
         ("factorial of 24", |trial| &trial.factorial),

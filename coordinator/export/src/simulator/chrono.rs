@@ -27,8 +27,10 @@ const NAMES: [&str; 6] = [
     "Janosi Shear",
 ];
 
-/// Returns the files of a folder by name: `soil.json` with the mean of each soil parameter, `terrain.json` that names it, `rig.yaml` with
-/// the wheel on its carriage, `draws.csv` with the soil at each draw, and `README.md`.
+/// Returns the files of a folder by name.
+///
+/// `soil.json` has the mean of each soil parameter, `terrain.json` names it, `rig.yaml` has the wheel on its carriage, `draws.csv` the
+/// soil at each draw, and `README.md` says how they are used.
 ///
 /// # Errors
 /// [`ExportError::Chrono`]: the model is not a Soil Contact Model, or has no condition.

@@ -246,7 +246,7 @@ impl CalibrationEngine {
             CalibrationEngine::Discovery(search) => Position::Search {
                 rounds: search.round() as u32,
             },
-            CalibrationEngine::Stepping(outline) => outline.position.clone(),
+            CalibrationEngine::Stepping(outline) => outline.position,
         }
     }
 

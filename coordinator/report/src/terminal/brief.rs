@@ -10,6 +10,7 @@ use result::flag::FlagKind;
 use result::study::Study;
 
 /// Returns the cautions, the most probable of compared models, the error ledger, and a line for each calibration that is not in the ledger.
+///
 /// Where the table of models has the errors already, the ledger follows only if something was added to the chosen model.
 pub fn brief(study: &Study) -> String {
     let is_in_ledger = |id: i64| study.ledger().any(|line| line.row.id == id);

@@ -178,7 +178,7 @@ fn formulas(formulas: &LawFormulas) -> String {
     };
     let width = formulas.classes.iter().map(|class| file(class).len()).max();
     Table::<&FormulaClass>::new()
-        .left(width.unwrap_or(0), "formula in the file", |class| file(class))
+        .left(width.unwrap_or(0), "formula in the file", file)
         .right(11, "probability", |class| format!("{:.4}", class.probability))
         .right(6, "alike", |class| class.members.len().saturating_sub(1))
         .apart(0, "simplest member", |class| {
