@@ -118,7 +118,7 @@ fn a_run_that_contradicts_all_others_is_said_at_once() {
     let pull: f64 = cells[8].parse().expect("a pull");
     cells[8] = (pull + 30.0).to_string();
     let wrong = watched(&[cells.join(",")]);
-    assert_contains!(wrong, "CONTRADICTS: run ", "drawbar_pull_n");
+    assert_contains!(wrong, "CONTRADICTS: run ", "drawbar_pull_n", "look at sensor");
 }
 
 #[test]

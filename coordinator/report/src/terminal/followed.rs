@@ -1,9 +1,13 @@
 //! A campaign that is followed, as text.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use prediction::follow::Followed;
 use result::number;
+
+/// Number of contradicting runs that speak against the model rather than against a rig.
+const SEVERAL: usize = 3;
 
 /// Returns what further runs changed: contradictions first, then verdict and next run, then models and parameters.
 ///
@@ -15,19 +19,33 @@ pub fn followed(followed: &Followed, seconds: f64) -> String {
     let last = followed.runs.last().map_or("", String::as_str);
     // Writing to a text cannot fail.
     let _ = writeln!(text, "{count} further runs, the last {last} ({seconds:.1} s)");
-    for far in followed
+    let far: Vec<_> = followed
         .expectations
         .iter()
         .filter(|expected| expected.contradicts)
-    {
+        .collect();
+    for expected in &far {
         let _ = writeln!(
             text,
-            "CONTRADICTS: run {}: {} {} was expected near {} (probability {:.0e}): look at its sensor, its preparation, and the wheel on its shaft",
-            far.run,
-            far.channel,
-            number::significant(far.measured, 4),
-            number::significant(far.expected, 4),
-            far.probability
+            "CONTRADICTS: run {}: {} {} was expected near {} (probability {:.0e})",
+            expected.run,
+            expected.channel,
+            number::significant(expected.measured, 4),
+            number::significant(expected.expected, 4),
+            expected.probability
+        );
+    }
+    let runs: BTreeSet<&str> = far.iter().map(|expected| expected.run.as_str()).collect();
+    if runs.len() >= SEVERAL {
+        let _ = writeln!(
+            text,
+            "{} runs contradict the model: it misses something that they show",
+            runs.len()
+        );
+    } else if !runs.is_empty() {
+        let _ = writeln!(
+            text,
+            "look at sensor, preparation, and the wheel on its shaft; where the run is right, the model is wrong there"
         );
     }
     let _ = writeln!(text, "verdict: {}", followed.verdict);
