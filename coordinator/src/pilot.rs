@@ -8,12 +8,29 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 use crate::embedded::{Evaluate, LocalModels};
-use farm::calibration::{Calibration, CalibrationIdentity, SimulationResult};
+use farm::calibration::{BeginError, Calibration, CalibrationIdentity, ResultError, SimulationResult};
 use job::{AlgorithmSettings, Spec};
 use shared::api::Position;
 
 /// The number of particles of the pilot. It suffices to fit the proposals of the stages, whose number hardly depends on it.
 const PILOT_PARTICLES: usize = 300;
+
+/// Why a pilot states no cost.
+#[derive(Debug, thiserror::Error)]
+pub enum PilotError {
+    /// The algorithm of the job cannot begin.
+    #[error(transparent)]
+    Begin(#[from] BeginError),
+    /// The model cannot be compiled.
+    #[error("{0}")]
+    Model(String),
+    /// The model returned what no result is.
+    #[error(transparent)]
+    Result(#[from] ResultError),
+    /// The algorithm failed.
+    #[error("the pilot failed: {0}")]
+    Failed(String),
+}
 
 /// The expected cost of a calibration, without the search that may follow it.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
@@ -53,7 +70,7 @@ impl JobCost {
 ///
 /// # Errors
 /// The model cannot be evaluated here, or the pilot fails.
-pub fn job_cost(spec: Spec, models: &LocalModels, longest_s: f64) -> anyhow::Result<JobCost> {
+pub fn job_cost(spec: Spec, models: &LocalModels, longest_s: f64) -> Result<JobCost, PilotError> {
     let algorithm = spec.algorithm;
     let pilot = pilot(spec, models, longest_s)?;
     let evaluations = pilot.expected(algorithm);
@@ -130,7 +147,7 @@ impl Pilot {
 }
 
 /// Runs the calibration in memory, with fewer particles where it samples.
-fn pilot(mut spec: Spec, models: &LocalModels, longest_s: f64) -> anyhow::Result<Pilot> {
+fn pilot(mut spec: Spec, models: &LocalModels, longest_s: f64) -> Result<Pilot, PilotError> {
     let least = PILOT_PARTICLES.max(2 * spec.parameters.len() + 2);
     if let AlgorithmSettings::Sample(settings) = &mut spec.algorithm {
         settings.particles = settings.particles.min(least);
@@ -152,7 +169,7 @@ fn pilot(mut spec: Spec, models: &LocalModels, longest_s: f64) -> anyhow::Result
     let mut calibration = Calibration::new(identity, Arc::new(spec))?;
     let simulated_s = simulate(&mut calibration, models, longest_s)?;
     if let Some(message) = calibration.message {
-        anyhow::bail!("the pilot failed: {message}");
+        return Err(PilotError::Failed(message));
     }
     let evaluations = calibration.cost.evaluations.max(1);
     Ok(Pilot {
@@ -173,7 +190,7 @@ fn pilot(mut spec: Spec, models: &LocalModels, longest_s: f64) -> anyhow::Result
 
 /// Simulates the calibration's evaluations until it ends, or until the longest duration of a pilot. Returns the seconds that simulations
 /// took.
-fn simulate(calibration: &mut Calibration, models: &LocalModels, longest_s: f64) -> anyhow::Result<f64> {
+fn simulate(calibration: &mut Calibration, models: &LocalModels, longest_s: f64) -> Result<f64, PilotError> {
     let mut compiled: BTreeMap<String, Evaluate> = BTreeMap::new();
     let began = Instant::now();
     let mut simulated_s = 0.0;
@@ -188,7 +205,7 @@ fn simulate(calibration: &mut Calibration, models: &LocalModels, longest_s: f64)
             if !compiled.contains_key(question.variant)
                 && let Some(variant) = calibration.variant(question.variant)
             {
-                let model = Evaluate::with(variant, models).map_err(anyhow::Error::msg)?;
+                let model = Evaluate::with(variant, models).map_err(PilotError::Model)?;
                 compiled.insert(question.variant.to_owned(), model);
             }
             let Some(model) = compiled.get(question.variant) else {

@@ -61,7 +61,7 @@ fn following_further_runs_equals_calibrating_again() {
         ..job
     });
     service.wait_for(again, "finished");
-    let evidence = float(&service.status(again)["log_evidence"]);
+    let evidence = float(&service.result(again, "summary")["calibrations"][0]["log_evidence"]);
     assert!(
         (float(&model["log_evidence"]) - evidence).abs() < 0.5,
         "{model} {evidence}"

@@ -149,7 +149,12 @@ impl PosteriorUpdate {
     fn next(&self, sample: &WeightedSample, weights: &ImportanceWeights) -> Option<Self> {
         let log_weights = sample.log_weights(1.0);
         let count = log_weights.len();
-        let enough = MIN_FITTED.min(0.5 * count as f64);
+        let possible = log_weights.iter().filter(|weight| weight.is_finite()).count();
+        if possible < 2 * (self.prior.dimension() + 2) {
+            return None;
+        }
+        // Even weights of all possible draws are twice as many effective ones, so that the search ends.
+        let enough = MIN_FITTED.min(0.5 * possible as f64);
         let (mut fitted, mut power) = (weights.clone(), 1.0);
         while fitted.ess < enough {
             power *= 0.7;
@@ -254,6 +259,41 @@ mod tests {
                 !is_far,
                 "{:?}",
                 updated.method
+            );
+        }
+    }
+
+    #[test]
+    fn an_update_ends_where_the_model_rejects_most_draws() {
+        let normal = Distribution::Normal { mean: 0.0, sd: 1.0 };
+        let prior = Prior::new(vec![Marginal::new(normal, None).unwrap(); 2]);
+        let draws: Vec<Particle> = (0..2000)
+            .map(|i| {
+                let theta = Stream::new(7, 0, i, 0).normals(2);
+                Particle {
+                    log_likelihood: LogLikelihood::new(0.0).unwrap(),
+                    log_prior: prior.log_density(&theta),
+                    theta,
+                }
+            })
+            .collect();
+        // With this many draws that the model accepts, the update goes on or fails.
+        for (accepted, goes_on) in [(60, true), (5, false), (0, false)] {
+            let update = PosteriorUpdate::new(prior.clone(), &draws, 0.0, 3);
+            let told: Vec<LogLikelihood> = (0..2000)
+                .map(|i| {
+                    if i < accepted {
+                        LogLikelihood::new(-(i as f64)).unwrap()
+                    } else {
+                        LogLikelihood::Impossible
+                    }
+                })
+                .collect();
+            let progress = update.tell(&told);
+            assert_eq!(
+                matches!(progress, UpdateProgress::Asks(_)),
+                goes_on,
+                "{accepted} of 2000"
             );
         }
     }

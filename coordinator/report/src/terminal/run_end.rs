@@ -34,7 +34,9 @@ pub fn run_end(tables: &str, story: &Story, folder: &Path, width: usize) -> Stri
     let tables = first_lines(tables, width);
     let ending = ending(folder).replacen('\n', "; more with --verbose\n", 1);
     let others = [&tables, &command, &ending];
-    let taken: usize = others.iter().map(|text| text.lines().count()).sum();
+    // A command is not broken into lines: the terminal does that.
+    let rows = |line: &str| line.chars().count().div_ceil(width).max(1);
+    let taken: usize = others.iter().flat_map(|text| text.lines()).map(rows).sum();
     let left = LINES.saturating_sub(taken);
     let mut heights = vec![LINES; sentences.len()];
     let written = |heights: &[usize]| -> Vec<String> {
@@ -93,7 +95,8 @@ mod tests {
         for study in &studies {
             for width in [60, 80, 120] {
                 let text = printed(study, width);
-                assert!(text.lines().count() <= LINES, "{text}");
+                let rows = text.lines().map(|line| line.chars().count().div_ceil(width).max(1));
+                assert!(rows.sum::<usize>() <= LINES, "{text}");
                 let sentences = text.lines().filter(|line| !line.contains("coordinator "));
                 for line in sentences {
                     assert!(line.chars().count() <= width, "{width}: {line}");
