@@ -95,7 +95,9 @@ mod tests {
         for study in &studies {
             for width in [60, 80, 120] {
                 let text = printed(study, width);
-                let rows = text.lines().map(|line| line.chars().count().div_ceil(width).max(1));
+                let rows = text
+                    .lines()
+                    .map(|line| line.chars().count().div_ceil(width).max(1));
                 assert!(rows.sum::<usize>() <= LINES, "{text}");
                 let sentences = text.lines().filter(|line| !line.contains("coordinator "));
                 for line in sentences {
