@@ -243,3 +243,42 @@ impl Service {
         Ok(response)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use shared::api::{NewCalibration, NewExperiment};
+
+    use super::*;
+    use crate::example::EXAMPLES;
+
+    #[tokio::test]
+    async fn a_row_that_was_read_before_its_calibration_ended_is_read_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = folder.path().join("grouser.db").display().to_string();
+        let settings = FarmSettings {
+            lease_ms: LEASE_MS,
+            rule: VerificationRule::default(),
+        };
+        let service = Service::open(&store, settings).await.unwrap();
+        let example = EXAMPLES[1];
+        let text_of = |&(name, text): &(&str, &str)| (name.to_owned(), text.to_owned());
+        let experiment = NewExperiment {
+            toml: example.experiment.1.into(),
+            files: example.files.iter().map(text_of).collect(),
+        };
+        let new = NewCalibration {
+            experiment: service.add_experiment(experiment).await.unwrap(),
+            toml: example.job.1.into(),
+            files: BTreeMap::new(),
+            name: None,
+            webhook: None,
+        };
+        let id = service.add_calibration(new).await.unwrap().id;
+        let rows = service.store().reader().calibrations(IdPage::ALL).await.unwrap();
+        service.control(id, Control::Cancel).await.unwrap();
+        let listed = service.statuses(rows).await.unwrap();
+        let cancelled = listed.iter().find(|status| status.id == id).unwrap();
+        assert_eq!(cancelled.state, CalibrationState::Cancelled);
+        service.close().await;
+    }
+}
