@@ -24,8 +24,10 @@ impl IdPage {
         limit: i64::MAX,
     };
 
-    /// Returns what is read next for a page of which a number of entries is listed, where others were left out; `None` once the page is
-    /// full. It may have more entries than the page lacks, because a few rows at a time would be a query for each that is left out.
+    /// Returns what is read next for a page of which a number of entries is listed, where others were left out; `None` once it is full.
+    ///
+    /// It may have more entries than the page lacks, because a few rows at a time would be a query for each that is left out. Checked by
+    /// `tests::the_rest_of_a_page_is_read_by_a_hundred_rows_at_least`.
     pub fn rest(self, after: i64, listed: usize) -> Option<IdPage> {
         let lacking = self.limit.saturating_sub_unsigned(listed as u64);
         (lacking > 0).then(|| IdPage {
