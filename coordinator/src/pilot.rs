@@ -188,16 +188,14 @@ fn pilot(mut spec: Spec, models: &LocalModels, longest_s: f64) -> Result<Pilot, 
     })
 }
 
-/// Simulates the calibration's evaluations until it ends, or until the longest duration of a pilot. Returns the seconds that simulations
-/// took.
+/// Simulates the calibration's evaluations, one at least, until it ends, or until the longest duration of a pilot. Returns the seconds that
+/// simulations took.
 fn simulate(calibration: &mut Calibration, models: &LocalModels, longest_s: f64) -> Result<f64, PilotError> {
     let mut compiled: BTreeMap<String, Evaluate> = BTreeMap::new();
     let began = Instant::now();
+    let is_over = || began.elapsed().as_secs_f64() > longest_s;
     let mut simulated_s = 0.0;
     while calibration.engine().finding().is_none() && !calibration.state.is_final() {
-        if began.elapsed().as_secs_f64() > longest_s {
-            break;
-        }
         for evaluation in calibration.queue.asked() {
             let Some(question) = calibration.question(evaluation) else {
                 break;
@@ -216,7 +214,40 @@ fn simulate(calibration: &mut Calibration, models: &LocalModels, longest_s: f64)
             simulated_s += start.elapsed().as_secs_f64();
             calibration.complete(evaluation, SimulationResult::new(outcome)?, "pilot")?;
             calibration.step();
+            // A round of a slow model may take hours.
+            if is_over() {
+                return Ok(simulated_s);
+            }
+        }
+        if is_over() {
+            break;
         }
     }
     Ok(simulated_s)
+}
+
+#[cfg(test)]
+mod tests {
+    use shared::file::FileSet;
+
+    use super::*;
+    use crate::example::EXAMPLES;
+
+    #[test]
+    fn a_pilot_ends_within_a_round() {
+        let example = EXAMPLES[1];
+        let set = |toml: &str, files: &[(&str, &str)]| FileSet {
+            toml: toml.to_owned(),
+            files: files
+                .iter()
+                .map(|&(name, text)| (name.to_owned(), text.to_owned()))
+                .collect(),
+        };
+        let (job, experiment) = (set(example.job.1, &[]), set(example.experiment.1, example.files));
+        let spec = Spec::new(example.job.0, &job, example.experiment.0, &experiment);
+        let spec = spec.expect("the example is valid");
+        let pilot = pilot(spec, &LocalModels::default(), 0.0).expect("it runs");
+        assert_eq!((pilot.evaluations, pilot.complete), (1, false));
+        assert!(pilot.seconds_per_evaluation > 0.0);
+    }
 }

@@ -73,6 +73,12 @@ impl Compute {
             .extend(steps.into_iter().map(|step| (key(&step), step)));
     }
 
+    /// Drops the waiting steps that nobody needs any more. `needs` says of a calibration whether it waits for the step of a number.
+    pub(super) fn drop_needless(&mut self, needs: impl Fn(i64, u64) -> bool) {
+        self.waiting
+            .retain(|_, step| needs(step.calibration(), step.number()));
+    }
+
     /// Notes that a thread is idle.
     pub(super) fn rests(&mut self, thread: usize) {
         self.threads[thread].is_idle = true;

@@ -26,6 +26,24 @@ pub enum ControlError {
         /// Verb of the refused command.
         verb: &'static str,
     },
+    /// No connected worker computes the version that a calibration shall go on with.
+    #[error(
+        "no connected worker computes version {version:?}; the connected ones compute {}",
+        listed(connected)
+    )]
+    NoSuchVersion {
+        /// The version that was asked for.
+        version: String,
+        /// The versions of the connected workers, without those that are quarantined.
+        connected: Vec<String>,
+    },
+}
+
+fn listed(versions: &[String]) -> String {
+    match versions.is_empty() {
+        true => "none".into(),
+        false => versions.join(", "),
+    }
 }
 
 /// A user's command on a calibration.

@@ -10,6 +10,7 @@ use super::control::{Control, ControlError};
 use super::lease_numbers::LeaseNumbers;
 use super::metrics::{FarmCounters, FarmMetrics};
 use super::progress::{self, Pace};
+use super::replay_cause::ReplayCause;
 use super::worker_record::WorkerRecord;
 use crate::calibration::{Calibration, VerificationRule};
 use crate::lease::LeaseQueue;
@@ -50,6 +51,8 @@ pub(super) struct Entry {
     pub(super) rewinds: u32,
     /// Whether the last replay failed, so that a user has to ask for another.
     pub(super) is_replay_due: bool,
+    /// The cause of the last replay that was asked for, which says why one that fails matters.
+    pub(super) replay_cause: ReplayCause,
     /// When busy time was last added up `[ms]`.
     counted_ms: u64,
 }
@@ -123,6 +126,7 @@ impl Farm {
             pace,
             rewinds: 0,
             is_replay_due: false,
+            replay_cause: ReplayCause::Worker,
             counted_ms: now_ms,
         };
         self.calibrations.insert(entry.calibration.identity.id, entry);
@@ -350,11 +354,22 @@ impl Farm {
                 calibration.resume(skip_faults, &mut self.facts);
             }
             (
-                Control::ComputeWith(version),
+                Control::ComputeWith(stated),
                 CalibrationState::Queued | CalibrationState::Running | CalibrationState::Paused,
             ) => {
-                let version = calibration.spec.fit_variant.model_version(equations_of(&version));
+                let equations = equations_of(&stated);
+                let version = calibration.spec.fit_variant.model_version(equations);
                 let is_pinned = calibration.model_version.as_ref() == Some(&version);
+                if !is_pinned {
+                    let connected = connected_versions(&self.workers, &self.shut_out, calibration);
+                    // A mistyped version would drop every result, and nobody would compute on.
+                    if !connected.contains(equations) {
+                        return Err(ControlError::NoSuchVersion {
+                            connected: connected.into_iter().map(str::to_owned).collect(),
+                            version: stated,
+                        });
+                    }
+                }
                 match state {
                     _ if !is_pinned => self.repin(id, version),
                     CalibrationState::Paused => {
@@ -416,4 +431,16 @@ impl Farm {
             .find_map(|e| e.calibration.variant(hash))
             .cloned()
     }
+}
+
+/// Returns the versions of the equations with which connected workers compute a calibration, without those of quarantined workers.
+fn connected_versions<'a>(
+    workers: &'a BTreeMap<String, WorkerRecord>,
+    shut_out: &BTreeSet<String>,
+    calibration: &Calibration,
+) -> BTreeSet<&'a str> {
+    let able = workers.iter().filter(|(name, _)| !shut_out.contains(*name));
+    able.filter_map(|(_, worker)| worker.equations_for(calibration))
+        .map(equations_of)
+        .collect()
 }

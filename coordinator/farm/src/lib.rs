@@ -14,7 +14,7 @@
 //! - `lease_numbers`: numbers of leases.
 //! - `share`: the division of leases among calibrations.
 //! - `seal`: the proof that a result belongs to its question.
-//! - `progress`: the speed of a calibration.
+//! - `progress`: the speed of a calibration. `replay_cause`: why one in progress is replayed.
 //! - `worker_record`, `metrics`: records of workers, and counters.
 
 pub mod calibration;
@@ -29,6 +29,7 @@ mod leasing;
 mod metrics;
 mod progress;
 mod pulse;
+mod replay_cause;
 mod seal;
 mod share;
 mod stepping;

@@ -1,6 +1,7 @@
 //! The steps of engines, which the farm hands out and is told of.
 
 use super::farm::Farm;
+use super::replay_cause::ReplayCause;
 use crate::calibration::{Step, Stepped};
 use shared::api::CalibrationState;
 
@@ -17,6 +18,13 @@ impl Farm {
             }
         }
         steps
+    }
+
+    /// Returns whether a calibration waits for the step of a number: it is not over, and has not been replayed since.
+    pub fn awaits_step(&self, id: i64, number: u64) -> bool {
+        self.calibrations
+            .get(&id)
+            .is_some_and(|entry| entry.rewinds == 0 && entry.calibration.awaits_step(number))
     }
 
     /// Goes on with a calibration whose step has been taken. One that is over, or waits for its replay, or has been replayed, needs the
@@ -44,6 +52,7 @@ impl Farm {
         }
         entry.rewinds += 1;
         entry.is_replay_due = true;
+        entry.replay_cause = ReplayCause::Step;
         let message = format!("the next round cannot be proposed, by an error of the program: {reason}");
         let paused = CalibrationState::Paused;
         entry

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use shared::model::equations_of;
 
 use super::farm::{Entry, Farm};
+use super::replay_cause::ReplayCause;
 use super::voting::{self, Voting, includes};
 use super::worker_record::WorkerRecord;
 use crate::calibration::{Answer, Calibration, Undecided};
@@ -40,9 +41,7 @@ impl Farm {
         let Some(entry) = self.calibrations.get_mut(&id) else {
             return;
         };
-        let message = format!(
-            "results of a worker that computes wrongly were dropped, but the rest cannot be replayed: {reason}"
-        );
+        let message = entry.replay_cause.failure(reason);
         entry.is_replay_due = true;
         let paused = shared::api::CalibrationState::Paused;
         entry
@@ -83,7 +82,7 @@ impl Farm {
                 worker: convicted.clone(),
                 width: entry.calibration.spec.algorithm.width(),
             });
-            entry.await_replay();
+            entry.await_replay(ReplayCause::Worker);
             self.rewinds.push(id);
         }
         // This fact comes last. A crash that loses it leaves a worker that can be convicted again.
@@ -174,7 +173,8 @@ impl Farm {
 
 impl Entry {
     /// Ends all leases until the calibration is replayed, because results of it are dropped.
-    pub(super) fn await_replay(&mut self) {
+    pub(super) fn await_replay(&mut self, cause: ReplayCause) {
+        self.replay_cause = cause;
         self.calibration.queue = Default::default();
         self.calibration.witness.second = Default::default();
         // A replay in progress has read results that are dropped now. One that is due and not in progress is this one.

@@ -7,6 +7,7 @@ use shared::exchange::WorkResult;
 use shared::model::equations_of;
 
 use super::farm::{Ended, Farm};
+use super::replay_cause::ReplayCause;
 use super::seal::{LeaseTerms, proves};
 use super::worker_record::WorkerRecord;
 use crate::calibration::{Calibration, ResultError, SimulationResult};
@@ -184,7 +185,7 @@ impl Farm {
         entry.calibration.model_version = Some(version.clone());
         let calibration = id;
         self.facts.push(Fact::Repinned { calibration, version });
-        entry.await_replay();
+        entry.await_replay(ReplayCause::Version);
         self.rewinds.push(id);
         if entry.calibration.state == CalibrationState::Paused {
             entry

@@ -371,6 +371,14 @@ fn the_operator_says_which_version_goes_on_where_an_invented_one_was_alone() {
     let refused = farm.exchange(of("honest", EQUATIONS, 2), 0).refused;
     assert!(refused.is_some_and(|why| why.contains("was begun with model version invented-1")));
     farm.take_facts();
+    let refused = farm.control(1, Control::ComputeWith("scm-77".into()), 0);
+    assert_eq!(
+        refused.expect_err("nobody computes it").to_string(),
+        format!(
+            "no connected worker computes version \"scm-77\"; the connected ones compute invented-1, {EQUATIONS}"
+        )
+    );
+    assert!(farm.take_facts().is_empty(), "nothing is dropped");
     let command = Control::ComputeWith(EQUATIONS.into());
     let state = farm.control(1, command.clone(), 0).expect("it runs");
     assert_eq!(state, CalibrationState::Running);

@@ -147,4 +147,45 @@ fn a_step_that_fails_pauses_and_a_user_who_resumes_asks_for_a_replay() {
     let resume = Control::Resume { skip_faults: false };
     farm.control(1, resume, 0).expect("it is paused");
     assert_eq!(farm.take_rewinds(), [1]);
+    farm.take_facts();
+    farm.rewind_failed(1, "a gap");
+    assert_eq!(
+        message(&farm),
+        "the calibration whose next round could not be proposed cannot be replayed: a gap"
+    );
+}
+
+#[test]
+fn a_failed_replay_names_its_cause() {
+    let case = case();
+    let (mut farm, ..) = stepping(&case);
+    let other = ExchangeRequest {
+        want: 1,
+        ..bare("b".into(), "scm-8")
+    };
+    farm.exchange(other, 0);
+    farm.control(1, Control::ComputeWith("scm-8".into()), 0)
+        .expect("a worker computes it");
+    farm.rewind_failed(1, "a gap");
+    assert_eq!(
+        message(&farm),
+        "results of another version of the equations were dropped, but the calibration cannot be replayed: a gap"
+    );
+}
+
+#[test]
+fn a_step_is_awaited_until_its_calibration_is_replayed_or_over() {
+    let case = case();
+    let (mut farm, step, _) = stepping(&case);
+    assert!(farm.awaits_step(1, step.number()) && !farm.awaits_step(1, step.number() + 1));
+    farm.add(case.begin(1).expect("the job is valid"), KEY, Vec::new(), 0);
+    assert!(!farm.awaits_step(1, step.number()), "it is replayed");
+    let (mut farm, step, _) = stepping(&case);
+    farm.control(1, Control::Cancel, 0).expect("it is in progress");
+    assert!(!farm.awaits_step(1, step.number()), "it is over");
+}
+
+fn message(farm: &Farm) -> String {
+    let status = farm.status(1, 0).expect("it is in progress");
+    status.message.unwrap_or_default()
 }

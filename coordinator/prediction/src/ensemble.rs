@@ -184,12 +184,7 @@ impl Ensemble {
         let asked = draws.unwrap_or(available).min(available);
         let count = asked.min(self.affordable(runs.len()));
         if count < asked.min(MIN_DRAWS) || count == 0 {
-            return Err(PredictionError::Request(format!(
-                "{} planned runs are too many: at {MIN_DRAWS} draws of {} models they must be at most {}",
-                runs.len(),
-                self.models.len(),
-                self.most_runs()
-            )));
+            return Err(self.too_many(runs.len()));
         }
         let first = self.asked().spec.experiment.runs.len();
         let mut models = Vec::new();
@@ -219,6 +214,25 @@ impl Ensemble {
             draws: count,
             is_thinned: count < asked,
         })
+    }
+
+    /// Returns the largest number of draws of each model at which a number of runs may be simulated in a request.
+    ///
+    /// # Errors
+    /// [`PredictionError::Request`] if it is below [`MIN_DRAWS`].
+    pub fn affordable_draws(&self, runs: usize) -> Result<usize, PredictionError> {
+        match self.affordable(runs) {
+            count if count < MIN_DRAWS => Err(self.too_many(runs)),
+            count => Ok(count),
+        }
+    }
+
+    fn too_many(&self, runs: usize) -> PredictionError {
+        PredictionError::Request(format!(
+            "{runs} runs are too many: at {MIN_DRAWS} draws of {} models they must be at most {}",
+            self.models.len(),
+            self.most_runs()
+        ))
     }
 
     /// Returns the cost of a run at one draw of each model, as a share of what a request may cost.

@@ -9,7 +9,7 @@ use prediction::follow::Followed;
 use shared::api::NewRuns;
 use shared::text_file::read_text;
 
-use super::output::say;
+use super::output::{remark, say};
 use super::place::Place;
 use super::predict::target;
 use crate::config::WatchArguments;
@@ -18,34 +18,68 @@ use result::Comparison;
 
 /// Interval between two looks at the file.
 const LOOK: Duration = Duration::from_millis(200);
+/// Interval after a look that failed, because a service that is away or refuses a row is not asked five times a second.
+const LOOK_AGAIN: Duration = Duration::from_secs(2);
 
 pub(super) async fn watch(config: &WatchArguments) -> anyhow::Result<()> {
     let place = Place::open(&config.source).await?;
     let id = target(&place, config.id).await?;
     let comparison: Comparison = place.get(&format!("/v1/calibrations/{id}/comparison")).await?;
     let known: BTreeSet<String> = comparison.rows.into_iter().map(|row| row.run).collect();
-    let mut seen = 0;
+    let mut followed = String::new();
+    let mut said = String::new();
     loop {
-        // A row that is being written has no line end yet.
-        let text = read_text(&config.runs)?;
-        let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
-        let (runs, count) = new_rows(whole, &known, &config.runs)?;
-        if count > seen {
-            seen = count;
-            let begin = Instant::now();
-            let new = NewRuns {
-                runs,
-                calibration: None,
-            };
-            let path = format!("/v1/calibrations/{id}/follow");
-            let followed: Followed = place.post(&path, &new).await?;
-            say(&terminal::followed(&followed, begin.elapsed().as_secs_f64()))?;
-        }
+        let looked = look(&place, id, &known, &config.runs, &mut followed).await;
         if config.once {
-            return Ok(());
+            return looked;
         }
-        tokio::time::sleep(LOOK).await;
+        // An editor that saves the file takes it away for a moment, a row may be mistyped, and a service may be away.
+        let problem = looked
+            .err()
+            .map_or_else(String::new, |error| format!("{error:#}"));
+        if !problem.is_empty() && problem != said {
+            remark("error:", &problem);
+        }
+        let interval = if problem.is_empty() { LOOK } else { LOOK_AGAIN };
+        said = problem;
+        tokio::time::sleep(interval).await;
     }
+}
+
+/// Follows the rows that the file has now, unless they are those that were followed last.
+async fn look(
+    place: &Place,
+    id: i64,
+    known: &BTreeSet<String>,
+    path: &Path,
+    followed: &mut String,
+) -> anyhow::Result<()> {
+    let text = read_text(path)?;
+    let Some(runs) = changed_rows(&text, known, path, followed)? else {
+        return Ok(());
+    };
+    let begin = Instant::now();
+    let new = NewRuns {
+        runs: runs.clone(),
+        calibration: None,
+    };
+    let answer: Followed = place.post(&format!("/v1/calibrations/{id}/follow"), &new).await?;
+    say(&terminal::followed(&answer, begin.elapsed().as_secs_f64()))?;
+    *followed = runs;
+    Ok(())
+}
+
+/// Returns the rows of runs that are not known; `None` without any, or where they are those that were followed last.
+fn changed_rows(
+    text: &str,
+    known: &BTreeSet<String>,
+    path: &Path,
+    followed: &str,
+) -> anyhow::Result<Option<String>> {
+    // A row that is being written has no line end yet.
+    let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
+    let (runs, count) = new_rows(whole, known, path)?;
+    Ok((count > 0 && runs != followed).then_some(runs))
 }
 
 /// Returns the rows of runs that are not known, with the header, and their number.
@@ -76,6 +110,19 @@ fn new_rows(text: &str, known: &BTreeSet<String>, path: &Path) -> anyhow::Result
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_row_that_is_corrected_is_followed_again() {
+        let known = BTreeSet::from(["a".to_owned()]);
+        let changed =
+            |text: &str, followed: &str| changed_rows(text, &known, Path::new("runs.csv"), followed).unwrap();
+        let first = changed("run,slip\na,0.1\nb,0.2\nc,0", "").expect("a row");
+        assert_eq!(first, "run,slip\nb,0.2\n");
+        assert_eq!(changed("run,slip\na,0.1\nb,0.2\n", &first), None);
+        let corrected = changed("run,slip\na,0.1\nb,0.3\n", &first);
+        assert_eq!(corrected.as_deref(), Some("run,slip\nb,0.3\n"));
+        assert_eq!(changed("run,slip\na,0.1\n", &first), None);
+    }
 
     #[test]
     fn rows_of_known_runs_are_left_out() {

@@ -21,12 +21,13 @@ const EXCHANGE: &str = "/v1/work/exchange";
 const BODY_TIME: Duration = Duration::from_secs(120);
 
 /// Returns the largest body of a route `[bytes]`. Large routes are the results of a large batch, the files of a large experiment, a table
-/// of measurements, a job with the draws that it names, further runs, an effect file for a job, lists of runs, plans and decisions. Other bodies are as
+/// of measurements, a job to check with its experiment, a job with the draws that it names, further runs, an effect file for a job, lists of runs, plans and decisions. Other bodies are as
 /// small as the addition of an effect from the catalogue.
 fn limit(path: &str) -> usize {
     match path.rsplit('/').next() {
         _ if path == EXCHANGE => 64 << 20,
-        Some("experiments") => 64 << 20,
+        // A check brings the files of the experiment with the job.
+        Some("experiments" | "check") => 64 << 20,
         Some("import" | "guess") => 32 << 20,
         Some("calibrations" | "runs") => 16 << 20,
         Some("follow") => 16 << 20,
@@ -118,4 +119,15 @@ fn unreadable(error: &axum::Error) -> HttpError {
     }
     let message = format!("the body cannot be read: {cause}");
     HttpError::new(ErrorKind::InvalidBody, message)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_check_may_bring_a_whole_experiment() {
+        assert_eq!(limit("/v1/check"), limit("/v1/experiments"));
+        assert_eq!(limit("/v1/effects"), 64 << 10);
+    }
 }

@@ -2,6 +2,7 @@
 
 use shared::api::CalibrationState;
 use shared::file::FileError;
+use tokio::task::JoinError;
 
 use crate::webhook::WebhookError;
 use farm::ControlError;
@@ -77,7 +78,7 @@ pub enum ServiceError {
     Thread(std::io::Error),
     /// A computation ended by a defect of the program.
     #[error("a computation of the service panicked: {0}")]
-    Panicked(tokio::task::JoinError),
+    Panicked(JoinError),
     #[error(transparent)]
     Stopped(#[from] Stopped),
     /// Too many facts wait for the store.
@@ -96,5 +97,32 @@ impl ServiceError {
     pub(super) fn not_finished(row: &CalibrationRow) -> Self {
         let (id, state) = (row.id, row.state);
         ControlError::NotFinished { id, state }.into()
+    }
+
+    /// Makes the error of a computation that did not end: only one that was cancelled is worth another try.
+    pub(super) fn not_ended(error: JoinError) -> Self {
+        match error.is_panic() {
+            true => ServiceError::Panicked(error),
+            false => Stopped.into(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn a_computation_that_panics_is_not_answered_as_busy() {
+        let compute: fn() = || panic!("of a prediction");
+        let error = tokio::task::spawn_blocking(compute).await.unwrap_err();
+        assert!(matches!(
+            ServiceError::not_ended(error),
+            ServiceError::Panicked(_)
+        ));
+        let endless = tokio::spawn(std::future::pending::<()>());
+        endless.abort();
+        let error = endless.await.unwrap_err();
+        assert!(matches!(ServiceError::not_ended(error), ServiceError::Stopped(_)));
     }
 }

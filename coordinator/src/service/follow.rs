@@ -41,6 +41,8 @@ fn followed(study: Study, id: i64, files: &FileSet, csv: &str) -> Result<Followe
     let (enlarged, _) = Experiment::with_runs(FILES[1], files, csv)?;
     let experiment = Arc::new(Experiment::parse(FILES[1], &enlarged)?);
     let ensemble = Ensemble::new(study, id, BTreeMap::new())?;
+    // A posterior is updated by simulations of all runs, in up to nine rounds of this many draws.
+    let most_draws = ensemble.affordable_draws(experiment.runs.len())?;
     let before = ensemble.asked().spec.experiment.runs.len();
     let gravity_m_s2 = experiment.rig.gravity_m_s2;
     let added = experiment.runs[before..].iter().map(|run| PlannedRun {
@@ -56,7 +58,7 @@ fn followed(study: Study, id: i64, files: &FileSet, csv: &str) -> Result<Followe
     for model in &simulated.models {
         let calibration = &model.calibration;
         let spec = enlarged_spec(calibration, &experiment)?;
-        let updated = updated(calibration, &spec)?;
+        let updated = updated(calibration, &spec, most_draws)?;
         let row = &calibration.row;
         models.push(FollowedModel::new(
             row.id,
@@ -101,10 +103,11 @@ fn enlarged_spec(
 }
 
 /// Updates the posterior of a calibration; `None` if it must be calibrated again: too few draws count, or the runs bring parameters of their
-/// own.
+/// own. Of more than `most_draws` draws, this many evenly spaced ones stand for the posterior.
 fn updated(
     calibration: &FinishedCalibration,
     spec: &Spec,
+    most_draws: usize,
 ) -> Result<Option<UpdatedPosterior>, PredictionError> {
     let draws = match &calibration.outcome {
         Found::Sampled(sampled) => &sampled.draws,
@@ -120,7 +123,8 @@ fn updated(
         return Ok(None);
     };
     let seed = spec.algorithm.seed();
-    let mut update = PosteriorUpdate::new(spec.prior(), draws, log_evidence, seed);
+    let draws = spaced(draws, most_draws);
+    let mut update = PosteriorUpdate::new(spec.prior(), &draws, log_evidence, seed);
     loop {
         let thetas = update.asked().iter();
         let question = Question {
@@ -139,6 +143,12 @@ fn updated(
             UpdateProgress::Failed => return Ok(None),
         }
     }
+}
+
+/// Returns evenly spaced elements, or all where they are few.
+fn spaced<T: Clone>(all: &[T], most: usize) -> Vec<T> {
+    let count = all.len().min(most);
+    (0..count).map(|i| all[i * all.len() / count].clone()).collect()
 }
 
 /// Searches the model of a job for a missing effect, as the farm does, in this process.
@@ -174,5 +184,17 @@ fn searched(job: &FileSet, experiment: &FileSet) -> Result<Discovery, Prediction
             let values = values.map_err(PredictionError::Model)?;
             running.tell(particle, values.as_deref()).map_err(|e| model(&e))?;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_posterior_with_too_many_draws_is_thinned_evenly() {
+        let all: Vec<usize> = (0..10).collect();
+        assert_eq!(spaced(&all, 5), [0, 2, 4, 6, 8]);
+        assert_eq!(spaced(&all, 20), all);
     }
 }

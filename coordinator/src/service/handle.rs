@@ -165,32 +165,42 @@ impl Service {
                 .collect(),
         };
         let mut listed = Vec::new();
-        let mut rest = page;
+        let mut rest = Some(page);
         // Those of archived studies are in the way of a full page.
-        while rest.limit > 0 {
-            let rows = reader.calibrations(rest).await?;
-            let shown = self.statuses(&rows).await?.into_iter();
+        while let Some(part) = rest {
+            let rows = reader.calibrations(part).await?;
+            let last = rows.last().filter(|_| rows.len() as i64 == part.limit);
+            let last = last.map(|&(id, _)| id);
+            let shown = self.statuses(rows).await?.into_iter();
             listed.extend(shown.filter(|status| !hidden.contains(&status.study)));
-            let Some(&(last, _)) = rows.last().filter(|_| rows.len() as i64 == rest.limit) else {
-                break;
-            };
-            rest = IdPage {
-                after: last,
-                limit: page.limit - listed.len() as i64,
-            };
+            rest = last.and_then(|last| page.rest(last, listed.len()));
         }
+        listed.truncate(usize::try_from(page.limit).unwrap_or(usize::MAX));
         Ok(listed)
     }
 
     /// Returns the states of stored calibrations, which are in the order of their ids.
+    ///
+    /// A row that was read before the farm is asked is stale where its calibration has ended in between: it is read again.
     pub(super) async fn statuses(
         &self,
-        rows: &[ListedCalibration],
+        mut rows: Vec<ListedCalibration>,
     ) -> Result<Vec<CalibrationStatus>, ServiceError> {
         let (Some((first, _)), Some((last, _))) = (rows.first(), rows.last()) else {
             return Ok(Vec::new());
         };
         let mut in_hand = self.dispatcher.statuses(*first..=*last).await?;
+        for (id, row) in &mut rows {
+            let id = *id;
+            let is_over = row.as_ref().is_ok_and(|row| row.state.is_final());
+            if !is_over
+                && !in_hand.contains_key(&id)
+                && self.left_alone(id).is_none()
+                && let Some(read) = self.store.reader().calibration(id).await.transpose()
+            {
+                *row = read;
+            }
+        }
         let status = |(id, row): &ListedCalibration| {
             let in_hand = in_hand.remove(id);
             in_hand.unwrap_or_else(|| self.stored_status(*id, row))
@@ -231,5 +241,44 @@ impl Service {
         let (response, fact) = self.dispatcher.exchange(request).await?;
         self.store.writer().durable(fact).await?;
         Ok(response)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use shared::api::{NewCalibration, NewExperiment};
+
+    use super::*;
+    use crate::example::EXAMPLES;
+
+    #[tokio::test]
+    async fn a_row_that_was_read_before_its_calibration_ended_is_read_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = folder.path().join("grouser.db").display().to_string();
+        let settings = FarmSettings {
+            lease_ms: LEASE_MS,
+            rule: VerificationRule::default(),
+        };
+        let service = Service::open(&store, settings).await.unwrap();
+        let example = EXAMPLES[1];
+        let text_of = |&(name, text): &(&str, &str)| (name.to_owned(), text.to_owned());
+        let experiment = NewExperiment {
+            toml: example.experiment.1.into(),
+            files: example.files.iter().map(text_of).collect(),
+        };
+        let new = NewCalibration {
+            experiment: service.add_experiment(experiment).await.unwrap(),
+            toml: example.job.1.into(),
+            files: BTreeMap::new(),
+            name: None,
+            webhook: None,
+        };
+        let id = service.add_calibration(new).await.unwrap().id;
+        let rows = service.store().reader().calibrations(IdPage::ALL).await.unwrap();
+        service.control(id, Control::Cancel).await.unwrap();
+        let listed = service.statuses(rows).await.unwrap();
+        let cancelled = listed.iter().find(|status| status.id == id).unwrap();
+        assert_eq!(cancelled.state, CalibrationState::Cancelled);
+        service.close().await;
     }
 }

@@ -13,7 +13,6 @@ use super::handle::Service;
 use super::submission::specs_of;
 use crate::embedded::LocalModels;
 use crate::pilot::{JobCost, job_cost};
-use farm::dispatch::Stopped;
 use job::{Spec, confounded_orders};
 use report::model_limits;
 use result::finished_calibration::prior_mean;
@@ -110,7 +109,7 @@ impl Service {
             let specs = specs_of(&job, &service_effects, &experiment)?;
             check(specs, &job, &experiment)
         });
-        checked.await.map_err(|_| Stopped)?
+        checked.await.map_err(ServiceError::not_ended)?
     }
 }
 

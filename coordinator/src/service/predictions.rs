@@ -5,13 +5,11 @@ use std::collections::BTreeMap;
 use shared::api::{NewDecision, NewPrediction};
 use shared::experiment::read_wheels;
 use tokio::sync::Semaphore;
-use tokio::task::JoinError;
 
 use super::error::ServiceError;
 use super::finished_study::{check_finished, finished_study};
 use super::handle::Service;
 use super::simulation::simulate;
-use farm::dispatch::Stopped;
 use job::{ConditionDefaults, read_decision};
 use prediction::decision::{decide, decision_runs};
 use prediction::prediction::predict;
@@ -72,15 +70,7 @@ impl Service {
             let _turn = turn;
             compute(study)
         });
-        Ok(computed.await.map_err(failed)??)
-    }
-}
-
-/// Returns the error of a computation that did not end: only one that was cancelled is worth another try.
-fn failed(error: JoinError) -> ServiceError {
-    match error.is_panic() {
-        true => ServiceError::Panicked(error),
-        false => Stopped.into(),
+        Ok(computed.await.map_err(ServiceError::not_ended)??)
     }
 }
 
@@ -110,20 +100,4 @@ fn decided(
     let (runs, scenarios) = decision_runs(&decision, &defaults)?;
     let simulated = ensemble.simulate(runs, draws, |question| simulate(&question))?;
     decide(&simulated, &decision, &scenarios)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[tokio::test]
-    async fn a_computation_that_panics_is_not_answered_as_busy() {
-        let compute: fn() = || panic!("of a prediction");
-        let error = tokio::task::spawn_blocking(compute).await.unwrap_err();
-        assert!(matches!(failed(error), ServiceError::Panicked(_)));
-        let endless = tokio::spawn(std::future::pending::<()>());
-        endless.abort();
-        let error = endless.await.unwrap_err();
-        assert!(matches!(failed(error), ServiceError::Stopped(_)));
-    }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::error::ServiceError;
 use super::stored_calibration::{calibration_row, experiment_files, spec_of};
 use farm::calibration::{Calibration, CalibrationIdentity, VerificationRule};
-use farm::dispatch::{Dispatcher, Rewinds, Stopped};
+use farm::dispatch::{Dispatcher, Rewinds};
 use store::{Reader, Store};
 
 /// Resumes the calibrations that are not over. Returns those that cannot be resumed, with the reasons. Nothing is written about these,
@@ -72,14 +72,13 @@ async fn take_up(
     };
     let experiment = experiment_files(reader, row.experiment).await?;
     let rule = rule.clone();
-    // The replay of a long calibration takes seconds of CPU time, so it does not run on the async runtime.
-    let replayed = tokio::task::spawn_blocking(move || {
+    let (calibration, facts) = in_background(move || {
         let calibration = Calibration::from_files(identity, spec, &row.job, &experiment)?;
         let mut calibration = calibration.verified(&rule, key);
         let facts = calibration.replay(stored)?;
-        Ok::<_, ServiceError>((calibration, facts))
-    });
-    let (calibration, facts) = replayed.await.map_err(|_| Stopped)??;
+        Ok((calibration, facts))
+    })
+    .await?;
     tracing::info!(
         id,
         name = calibration.identity.name,
@@ -88,4 +87,27 @@ async fn take_up(
         "resumed"
     );
     Ok(dispatcher.add(calibration, key, facts).await?)
+}
+
+/// Computes outside the threads of the runtime, because the replay of a long calibration takes seconds of CPU time. A panic is an error of
+/// this computation alone.
+async fn in_background<T: Send + 'static>(
+    compute: impl FnOnce() -> Result<T, ServiceError> + Send + 'static,
+) -> Result<T, ServiceError> {
+    let computed = tokio::task::spawn_blocking(compute).await;
+    computed.map_err(ServiceError::not_ended)?
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn a_replay_that_panics_does_not_stop_the_service() {
+        let replay: fn() -> Result<(), ServiceError> = || panic!("in a step");
+        let error = in_background(replay).await.unwrap_err();
+        // Every error but `Stopped` leaves one calibration alone.
+        assert!(matches!(error, ServiceError::Panicked(_)), "{error}");
+        assert!(error.to_string().contains("in a step"), "{error}");
+    }
 }

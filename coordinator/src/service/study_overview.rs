@@ -89,22 +89,20 @@ impl Service {
         page: IdPage,
     ) -> Result<Vec<StudyListItem>, ServiceError> {
         let mut items = Vec::new();
-        let mut rest = page;
+        let mut rest = Some(page);
         // Archived studies are in the way of a full page.
-        while rest.limit > 0 {
-            let ids = self.store().reader().study_ids(rest).await?;
+        while let Some(part) = rest {
+            let ids = self.store().reader().study_ids(part).await?;
             let (Some(&first), Some(&last)) = (ids.first(), ids.last()) else {
                 break;
             };
             items.extend(self.studies_in(first..=last, with_archived).await?);
-            if (ids.len() as i64) < rest.limit {
+            if (ids.len() as i64) < part.limit {
                 break;
             }
-            rest = IdPage {
-                after: last,
-                limit: page.limit - items.len() as i64,
-            };
+            rest = page.rest(last, items.len());
         }
+        items.truncate(usize::try_from(page.limit).unwrap_or(usize::MAX));
         Ok(items)
     }
 
@@ -121,7 +119,7 @@ impl Service {
         // A calibration whose row cannot be read belongs to no known study.
         let is_member = |s: &CalibrationStatus| s.study != 0 && !withdrawn.contains(&s.id);
         let rows = reader.calibrations_of(&ids).await?;
-        for status in self.statuses(&rows).await?.into_iter().filter(is_member) {
+        for status in self.statuses(rows).await?.into_iter().filter(is_member) {
             studies.entry(status.study).or_default().push(status);
         }
         let mut listed = self.results.texts(&StudyFile::ListItem.name(), &ids).await?;

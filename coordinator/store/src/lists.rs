@@ -23,7 +23,22 @@ impl IdPage {
         after: i64::MIN,
         limit: i64::MAX,
     };
+
+    /// Returns what is read next for a page of which a number of entries is listed, where others were left out; `None` once it is full.
+    ///
+    /// It may have more entries than the page lacks, because a few rows at a time would be a query for each that is left out. Checked by
+    /// `tests::the_rest_of_a_page_is_read_by_a_hundred_rows_at_least`.
+    pub fn rest(self, after: i64, listed: usize) -> Option<IdPage> {
+        let lacking = self.limit.saturating_sub_unsigned(listed as u64);
+        (lacking > 0).then(|| IdPage {
+            after,
+            limit: lacking.max(LEAST_ROWS),
+        })
+    }
 }
+
+/// The least number of rows that are read at once where some are left out.
+const LEAST_ROWS: i64 = 100;
 
 /// A calibration by its id, or the reason why its row cannot be read.
 pub type ListedCalibration = (i64, Result<CalibrationRow, StoreError>);
@@ -85,5 +100,19 @@ impl Reader {
             .bind(page.limit)
             .fetch_all(&self.pool)
             .await?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rest_of_a_page_is_read_by_a_hundred_rows_at_least() {
+        let page = IdPage { after: 0, limit: 200 };
+        let rest = |listed| page.rest(7, listed).map(|rest| (rest.after, rest.limit));
+        assert_eq!(rest(20), Some((7, 180)));
+        assert_eq!(rest(199), Some((7, 100)));
+        assert_eq!((rest(200), rest(250)), (None, None));
     }
 }

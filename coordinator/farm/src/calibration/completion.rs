@@ -122,7 +122,7 @@ impl Calibration {
         })
     }
 
-    /// Returns the log-likelihood of an outcome.
+    /// Returns the part of an outcome that is stored.
     fn kept(&self, evaluation: u64, outcome: Result<Observables, RejectionReason>) -> Kept {
         let searched = |observables: &Observables| {
             let particle = self.proposal(evaluation)?.particle;

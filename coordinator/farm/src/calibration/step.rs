@@ -63,7 +63,9 @@ impl Step {
     pub fn is_long(&self) -> bool {
         /// The number of results of which a sampler makes less than a second.
         const SHORT: usize = 5_000;
-        self.answers > SHORT || self.engine.discovery().is_some()
+        // An emulator is fitted and sampled within one step, however few results it is told.
+        let is_emulated = matches!(self.engine, CalibrationEngine::Emulated(_));
+        self.answers > SHORT || is_emulated || self.engine.discovery().is_some()
     }
 
     /// Takes the step.

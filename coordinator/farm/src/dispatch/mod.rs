@@ -301,6 +301,9 @@ impl Thread {
     /// Gives the compute threads the steps that have become due.
     fn hand_out_steps(&mut self) {
         self.compute.add(self.farm.take_steps());
+        let farm = &self.farm;
+        self.compute
+            .drop_needless(|calibration, number| farm.awaits_step(calibration, number));
         self.compute.hand_out(|| {
             // Without a handle on this thread, it ends.
             let own = self.own.upgrade()?;

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use super::*;
 use crate::calibration::{CalibrationIdentity, Stepped};
 use job::Spec;
-use shared::exchange::{PROTOCOL_VERSION, WorkResult};
+use shared::exchange::{Lease, PROTOCOL_VERSION, WorkResult};
 use shared::file::FileSet;
 use shared::outcome::{Observables, Outcome};
 
@@ -16,6 +16,10 @@ const RUNS: &str =
 const KEY: SealKey = SealKey([1; 16]);
 
 fn calibration(id: i64) -> Calibration {
+    calibration_of(id, JOB)
+}
+
+fn calibration_of(id: i64, job: &str) -> Calibration {
     let files = |toml: &str, files| FileSet {
         toml: toml.into(),
         files,
@@ -23,7 +27,7 @@ fn calibration(id: i64) -> Calibration {
     let runs = [("runs.csv".to_owned(), RUNS.to_owned())].into();
     let spec = Spec::new(
         "job.toml",
-        &files(JOB, Default::default()),
+        &files(job, Default::default()),
         "experiment.toml",
         &files(EXPERIMENT, runs),
     );
@@ -69,22 +73,7 @@ impl Halted {
     }
 
     async fn exchange(&self, results: Vec<WorkResult>, want: u32, wait_ms: u64) -> ExchangeResponse {
-        let request = ExchangeRequest {
-            worker: "w".into(),
-            protocol: PROTOCOL_VERSION,
-            model_version: "toy-1".into(),
-            models: Default::default(),
-            queue_job: None,
-            threads: 1,
-            evaluation_s: None,
-            results,
-            holding: Vec::new(),
-            returned: Vec::new(),
-            started: Vec::new(),
-            received: u64::MAX,
-            want,
-            wait_ms,
-        };
+        let request = request(results, want, wait_ms);
         self.dispatcher.exchange(request).await.expect("the farm runs").0
     }
 
@@ -96,17 +85,39 @@ impl Halted {
             .expect("the farm runs");
         let leases = self.exchange(Vec::new(), 20, 0).await.leases;
         assert_eq!(leases.len(), 20);
-        let result = |lease: shared::exchange::Lease| WorkResult {
-            lease: lease.lease,
-            calibration: lease.calibration,
-            evaluation: lease.evaluation,
-            seal: lease.seal,
-            outcome: outcome(lease.theta[0]),
-            repeated: None,
-        };
-        self.exchange(leases.into_iter().map(result).collect(), 20, 0)
-            .await
+        self.exchange(answers(leases), 20, 0).await
     }
+}
+
+fn request(results: Vec<WorkResult>, want: u32, wait_ms: u64) -> ExchangeRequest {
+    ExchangeRequest {
+        worker: "w".into(),
+        protocol: PROTOCOL_VERSION,
+        model_version: "toy-1".into(),
+        models: Default::default(),
+        queue_job: None,
+        threads: 1,
+        evaluation_s: None,
+        results,
+        holding: Vec::new(),
+        returned: Vec::new(),
+        started: Vec::new(),
+        received: u64::MAX,
+        want,
+        wait_ms,
+    }
+}
+
+fn answers(leases: Vec<Lease>) -> Vec<WorkResult> {
+    let result = |lease: Lease| WorkResult {
+        lease: lease.lease,
+        calibration: lease.calibration,
+        evaluation: lease.evaluation,
+        seal: lease.seal,
+        outcome: outcome(lease.theta[0]),
+        repeated: None,
+    };
+    leases.into_iter().map(result).collect()
 }
 
 fn outcome(value: f64) -> Outcome {
@@ -182,4 +193,37 @@ async fn a_step_that_panics_pauses_its_calibration_alone() {
         "{message}"
     );
     farm.dispatcher.stop();
+}
+
+#[tokio::test]
+async fn a_waiting_step_of_a_cancelled_calibration_is_not_taken() {
+    let farm = Halted::start();
+    let threads = std::thread::available_parallelism().map_or(2, usize::from).max(2) as i64;
+    // Each thread has a step; two more wait.
+    let (cancelled, last) = (threads + 1, threads + 2);
+    for id in 1..=last {
+        farm.answer_round(id).await;
+    }
+    let control = farm.dispatcher.control(cancelled, Control::Cancel).await;
+    control.expect("the farm runs").expect("it is in progress");
+    for _ in 1..last {
+        farm.go.send(true).expect("a step waits");
+    }
+    let mut taken: Vec<i64> = (1..last).map(|_| farm.begun.recv().expect("a step")).collect();
+    taken.sort_unstable();
+    assert_eq!(taken, (1..=threads).chain([last]).collect::<Vec<_>>());
+    farm.dispatcher.stop();
+}
+
+#[test]
+fn the_step_of_an_emulated_sampler_is_long() {
+    for (stages, is_long) in [("moves = [2, 4]", false), ("stages = \"emulated\"", true)] {
+        let mut farm = Farm::new(1, 60_000);
+        let calibration = calibration_of(1, &JOB.replace("moves = [2, 4]", stages));
+        farm.add(calibration, KEY, Vec::new(), 0);
+        let leases = farm.exchange(request(Vec::new(), 1_000, 0), 0).leases;
+        farm.exchange(request(answers(leases), 0, 0), 0);
+        let step = farm.take_steps().pop().expect("the round is over");
+        assert_eq!(step.is_long(), is_long, "{stages}");
+    }
 }

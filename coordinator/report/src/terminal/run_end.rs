@@ -11,6 +11,8 @@ use crate::story::Story;
 const LINES: usize = 15;
 /// Maximum number of them before the story.
 const TABLES: usize = 8;
+/// The beginning of a line that says why numbers may be wrong. Such lines follow each other.
+const CAUTION: &str = "caution: ";
 
 /// Returns the tables of a study, its story, and where its files are, in at most [`LINES`] lines. Sentences that are longer lose their last
 /// clauses.
@@ -58,10 +60,32 @@ pub fn run_end(tables: &str, story: &Story, folder: &Path, width: usize) -> Stri
     tables + &texts.concat() + &command + &ending
 }
 
-/// Returns the lines before the story, each within the width, because a terminal breaks longer ones between any two letters.
+/// Returns the lines before the story, each within the width, because a terminal breaks longer ones between any two letters. Where there are
+/// too many, the last cautions are counted instead of written, and if that does not suffice, `...` stands for the last rows.
 fn first_lines(tables: &str, width: usize) -> String {
-    let lines = tables.lines().filter(|line| !line.is_empty()).take(TABLES);
+    let lines = tables.lines().filter(|line| !line.is_empty());
+    let mut lines: Vec<String> = lines.map(str::to_owned).collect();
+    let excess = lines.len().saturating_sub(TABLES);
+    let is_caution = |line: &String| line.starts_with(CAUTION);
+    // The line that counts the cautions takes the place of one.
+    let counted = lines
+        .iter()
+        .filter(|line| is_caution(line))
+        .count()
+        .min(excess + 1);
+    if excess > 0
+        && counted > 1
+        && let Some(last) = lines.iter().rposition(is_caution)
+    {
+        let note = format!("{CAUTION}{counted} more with --verbose");
+        lines.splice(last + 1 - counted..=last, [note]);
+    }
+    if lines.len() > TABLES {
+        lines.truncate(TABLES - 1);
+        lines.push("...".into());
+    }
     lines
+        .iter()
         .map(|line| match line.chars().count() <= width {
             true => format!("{line}\n"),
             false => {
@@ -99,7 +123,8 @@ mod tests {
                     .lines()
                     .map(|line| line.chars().count().div_ceil(width).max(1));
                 assert!(rows.sum::<usize>() <= LINES, "{text}");
-                let sentences = text.lines().filter(|line| !line.contains("coordinator "));
+                let is_kept_whole = |line: &&str| line.contains("coordinator ") || line.starts_with("files:");
+                let sentences = text.lines().filter(|line| !is_kept_whole(line));
                 for line in sentences {
                     assert!(line.chars().count() <= width, "{width}: {line}");
                 }
@@ -108,6 +133,23 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn cautions_are_counted_before_rows_are_left_out_with_a_mark() {
+        let rows = |count: usize| (1..=count).map(|i| format!("row {i}\n")).collect::<String>();
+        let cautions = "caution: a\ncaution: b\ncaution: c\n";
+        let all = cautions.to_owned() + &rows(5);
+        assert_eq!(first_lines(&all, 80), all);
+        assert_eq!(
+            first_lines(&(cautions.to_owned() + &rows(6)), 80),
+            "caution: a\ncaution: 2 more with --verbose\n".to_owned() + &rows(6)
+        );
+        assert_eq!(
+            first_lines(&(cautions.to_owned() + &rows(9)), 80),
+            "caution: 3 more with --verbose\n".to_owned() + &rows(6) + "...\n"
+        );
+        assert_eq!(first_lines(&rows(9), 80), rows(7) + "...\n");
     }
 
     #[test]

@@ -232,7 +232,7 @@ mod tests {
         let members = formulas.classes.iter().flat_map(|class| &class.members);
         let mut members = members.map(|member| member.formula.as_str());
         assert!(
-            members.any(|formula| formula.starts_with("tau * (1 + v_t / 0.0005")),
+            members.any(|formula| formula.starts_with("tau * (1 + v_t / 0.000")),
             "{}",
             shown()
         );
