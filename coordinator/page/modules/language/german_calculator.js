@@ -84,7 +84,7 @@ export const CALCULATOR = {
   "that a new measurement says so": "dass eine neue Messung es so zeigt",
   "The cost is not known: {0}.": "Die Kosten sind nicht bekannt: {0}.",
   "the measured runs": "die gemessenen Fahrten",
-  "The model rejected {0} % of its parameter vectors.": "Das Modell hat {0} % seiner Parameter abgelehnt.",
+  "The model rejected {0} % of its parameter vectors.": "Das Modell hat {0} % der Parametervektoren abgelehnt.",
   "The program computes the curves …": "Das Programm rechnet die Kurven …",
   "The search that may follow is not in it.": "Die Suche, die folgen kann, ist nicht enthalten.",
   "This model rolls over terrain: a prediction takes minutes.":
