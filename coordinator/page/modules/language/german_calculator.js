@@ -67,6 +67,7 @@ export const CALCULATOR = {
   "Predicted {0} by slip": "Vorhersage über dem Schlupf: {0}",
   "Predictions at the chosen condition": "Vorhersagen bei der gewählten Bedingung",
   "prior of {0}": "Prior von {0}",
+  "prior of {0}: two numbers above 0, the smaller first": "Prior von {0}: zwei Zahlen über 0, die kleinere zuerst",
   "prior of {0}: two numbers, the smaller first, or a mean and an sd above 0, or one number":
     "Prior von {0}: zwei Zahlen, die kleinere zuerst, oder Mittel und Standardabweichung über 0, oder eine Zahl",
   Priors: "Priors",
