@@ -3,7 +3,9 @@
 /** @type {Record<string, string>} */
 export const CALCULATOR = {
   "1.24 × radius": "1.24 × Radius",
+  "90 % by the parameters alone: the noise is not known": "90 % nur nach den Parametern: das Rauschen ist nicht bekannt",
   "90 % of new measurements": "90 % neuer Messungen",
+  "90 % of new measurements, or by the parameters alone": "90 % neuer Messungen, oder nur nach den Parametern",
   "A pilot runs …": "Ein Probelauf rechnet …",
   "A prior says what is known before the runs. job.toml takes other forms, too.":
     "Ein Prior sagt, was vor den Fahrten bekannt ist. job.toml nimmt auch andere Formen.",
@@ -61,6 +63,7 @@ export const CALCULATOR = {
   "No wheel run is fitted, so that nothing tells what a wheel would do.":
     "Keine Fahrt eines Rades ist angepasst; darum sagt nichts, was ein Rad tun würde.",
   "number {0} of the prior of {1}": "Zahl {0} des Priors von {1}",
+  "parameters alone": "nur nach den Parametern",
   "power number": "Leistungszahl",
   Predict: "Vorhersage",
   "Predict here": "Hier vorhersagen",
@@ -91,8 +94,8 @@ export const CALCULATOR = {
   "This model rolls over terrain: a prediction takes minutes.":
     "Dieses Modell rollt über Gelände: eine Vorhersage dauert Minuten.",
   "tractive efficiency": "Zugwirkungsgrad",
-  "What the calibrated models predict for a condition that nobody measured: mean and 90 % of new measurements, over all models of the study by their evidence. Straight travel on level ground.":
-    "Was die kalibrierten Modelle für eine Bedingung vorhersagen, die niemand gemessen hat: Mittel und 90 % neuer Messungen, über alle Modelle der Studie nach ihrer Evidenz. Geradeausfahrt auf ebenem Boden.",
+  "What the calibrated models predict for a condition that nobody measured: mean and 90 % of new measurements (by the parameters alone where the noise is not known), over all models of the study by their evidence. Straight travel on level ground.":
+    "Was die kalibrierten Modelle für eine Bedingung vorhersagen, die niemand gemessen hat: Mittel und 90 % neuer Messungen (nur nach den Parametern, wo das Rauschen nicht bekannt ist), über alle Modelle der Studie nach ihrer Evidenz. Geradeausfahrt auf ebenem Boden.",
   "What the job will do": "Was der Job tun wird",
   Wheel: "Rad",
   Whole: "Ganzes",

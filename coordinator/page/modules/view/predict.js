@@ -10,7 +10,7 @@ import { path, predict } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { loadWords, slipWords, speedWords } from "../words/condition.js";
 import { rimSpeed } from "../words/group.js";
-import { channelOf, quantityName, shownQuantities } from "../words/predicted_quantity.js";
+import { channelOf, intervalName, quantityName, shownQuantities } from "../words/predicted_quantity.js";
 import { capital, digits, minus, numberOf, probability, shown, titled } from "../words/quantity.js";
 
 /** Draws of the grid: enough for a curve to follow the sliders; what stands still is computed with all draws. */
@@ -58,7 +58,7 @@ function Calculator(/** @type {{ study: any, model: any, rows: any[], fitted: an
   const labels = { slip: t`slip`, load: t`wheel load`, speed: isRim ? t`speed of the rim` : t`sled speed` };
   const words = { slip: slipWords, load: loadWords, speed: speedWords };
   return html`
-    <p class="note">What the calibrated models predict for a condition that nobody measured: mean and 90 % of new measurements, over all models of the study by their evidence. Straight travel on level ground.</p>
+    <p class="note">What the calibrated models predict for a condition that nobody measured: mean and 90 % of new measurements (by the parameters alone where the noise is not known), over all models of the study by their evidence. Straight travel on level ground.</p>
     <div class="setting">
       <div class="controls">
         ${wheels.length > 1 && html`<p><label>Wheel <select onChange=${(/** @type {any} */ e) => set({ wheel: e.target.value })}>${wheels.map((wheel) => html`<option value=${wheel} selected=${wheel === place.wheel}>${wheel}</option>`)}</select></label></p>`}
@@ -160,11 +160,12 @@ function Statement(/** @type {{ found: any, statement: any, change: (to: any) =>
 
 /** Every quantity at the chosen condition. */
 function Values(/** @type {{ source: table.Table, quantities: any[], place: table.Place }} */ { source, quantities, place }) {
-  const rows = quantities.map(({ name, unit }) => {
+  const all = quantities.map(({ name, unit }) => ({ name, unit, spread: table.atSlip(table.curve(source, name, place), place.slip) }));
+  const kinds = [...new Set(all.flatMap(({ spread }) => (spread ? [spread.isMeasurement] : [])))];
+  const rows = all.map(({ name, unit, spread }) => {
     const { unit: word, scale } = shown(unit);
-    const spread = table.atSlip(table.curve(source, name, place), place.slip);
     const value = (/** @type {number | undefined} */ v) => (v === undefined ? "–" : minus(digits(v * scale)));
-    return [capital(titled(quantityName(name), word)), value(spread?.mean), spread ? `${value(spread.low)}${t` to `}${value(spread.high)}` : "–"];
+    return [capital(titled(quantityName(name), word)), value(spread?.mean), spread ? `${value(spread.low)}${t` to `}${value(spread.high)}${kinds.length > 1 && !spread.isMeasurement ? ` (${t`parameters alone`})` : ""}` : "–"];
   });
-  return html`<${Table} label="Predictions at the chosen condition" head=${[t`at slip ${slipWords(place.slip)}`, t`mean`, t`90 % of new measurements`]} rows=${rows} numbers=${[1, 2]} />`;
+  return html`<${Table} label="Predictions at the chosen condition" head=${[t`at slip ${slipWords(place.slip)}`, t`mean`, kinds.length > 1 ? t`90 % of new measurements, or by the parameters alone` : intervalName(kinds[0] ?? true)]} rows=${rows} numbers=${[1, 2]} />`;
 }

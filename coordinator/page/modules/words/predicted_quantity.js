@@ -17,5 +17,8 @@ export const shownQuantities = (/** @type {any} */ run) => run.quantities.filter
 /** The name of a quantity as words, without its unit. */
 export const quantityName = (/** @type {string} */ name) => (CHANNELS[name] ? channelName(CHANNELS[name]) : DERIVED[name] ?? words(name));
 
+/** What the interval of a prediction is. */
+export const intervalName = (/** @type {boolean} */ isMeasurement) => (isMeasurement ? t`90 % of new measurements` : t`90 % by the parameters alone: the noise is not known`);
+
 /** The channel that a quantity is; null of what follows from channels. */
 export const channelOf = (/** @type {string} */ name) => CHANNELS[name] ?? null;
