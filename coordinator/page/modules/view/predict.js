@@ -81,20 +81,20 @@ function Calculator(/** @type {{ study: any, model: any, rows: any[], fitted: an
     </div>`;
 }
 
-/** The grid of a wheel, asked once. */
+/** The grid of a wheel, asked once; it has no table until the answer for this wheel is there. */
 function useGrid(/** @type {number | null} */ id, /** @type {string} */ wheel, /** @type {table.Ranges} */ reach, /** @type {boolean} */ isRim) {
-  const [state, setState] = useState(/** @type {{ table: table.Table | null, quantities: any[], error: any }} */ ({ table: null, quantities: [], error: null }));
+  const [state, setState] = useState(/** @type {{ of: string, table: table.Table | null, quantities: any[], error: any }} */ ({ of: wheel, table: null, quantities: [], error: null }));
   useEffect(() => {
     if (id === null) return undefined;
     let isOver = false;
     const { plan, fill } = table.gridPlan(wheel, reach, isRim);
     predict(id, { plan, draws: GRID_DRAWS }).then(
-      ({ runs }) => isOver || setState({ table: fill(runs), quantities: quantitiesOf(runs), error: null }),
-      (error) => isOver || setState({ table: null, quantities: [], error }),
+      ({ runs }) => isOver || setState({ of: wheel, table: fill(runs), quantities: quantitiesOf(runs), error: null }),
+      (error) => isOver || setState({ of: wheel, table: null, quantities: [], error }),
     );
     return () => void (isOver = true);
   }, [id, wheel]);
-  return state;
+  return state.of === wheel ? state : { ...state, table: null, error: null };
 }
 
 /** The curve at a place where the sliders rest, and the probability of a statement there. */
