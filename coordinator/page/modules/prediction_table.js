@@ -5,7 +5,8 @@ import { rimSpeed } from "./words/group.js";
 /**
  * @typedef {{ slip: [number, number], load: [number, number], speed: [number, number] }} Ranges
  * @typedef {{ wheel: string, slip: number, load: number, speed: number }} Place in SI; speed: of the rim or the sled, whichever the rig held
- * @typedef {{ mean: number, low: number, high: number }} Spread low, high: 90 % of new measurements; of the parameters where the noise is not known
+ * @typedef {{ mean: number, low: number, high: number, isMeasurement: boolean }} Spread low, high: 90 % of new measurements, or of what the
+ *   parameters alone say where the noise is not known (isMeasurement: false)
  * @typedef {{ wheel: string, slips: number[], loads: number[], speeds: number[], at: (Map<string, Spread> | null)[] }} Table
  *   at: the quantities by slip, then load, then speed; null where the model refuses
  */
@@ -71,7 +72,7 @@ const three = (/** @type {[number, number]} */ [low, high]) => (low === high ? [
 function planOf(/** @type {string} */ wheel, /** @type {number[]} */ slips, /** @type {number[]} */ loads, /** @type {number[]} */ speeds, /** @type {boolean} */ isRim) {
   const rows = slips.flatMap((slip) => loads.flatMap((load) => speeds.map((speed) => [wheel, slip, load, sledSpeed(slip, speed, isRim)])));
   const plan = `${["wheel,slip,wheel_load_n,sled_speed_m_s", ...rows.map((row) => row.join(","))].join("\n")}\n`;
-  return { plan, fill: (/** @type {any[]} */ runs) => ({ wheel, slips, loads, speeds, at: runs.map(spreads) }) };
+  return { plan, fill: (/** @type {any[]} */ runs) => ({ wheel, slips, loads, speeds, at: spreads(runs) }) };
 }
 
 /** The plan of a grid over all conditions. */
@@ -83,13 +84,18 @@ export function curvePlan(/** @type {Place} */ { wheel, slip, load, speed }, /**
   return { ...planOf(wheel, slips, [load], [speed], isRim), here: slips.indexOf(slip) };
 }
 
-/** The quantities of a predicted run; null where the model refuses it. */
-function spreads(/** @type {any} */ run) {
-  if (run.quantities.length === 0) return null;
-  return new Map(run.quantities.map((/** @type {any} */ q) => {
-    const [low, high] = q.models_measurement ?? q.models;
-    return [q.name, { mean: q.models_mean, low, high }];
-  }));
+/**
+ * The quantities of each predicted run; null where the model refuses it. A quantity has intervals of one kind at all runs, since curves and
+ * parabolas join them: those of new measurements where every run has them.
+ * @returns {(Map<string, Spread> | null)[]}
+ */
+function spreads(/** @type {any[]} */ runs) {
+  const noiseless = new Set(runs.flatMap(({ quantities }) => quantities.filter((/** @type {any} */ q) => q.models_measurement === null).map((/** @type {any} */ q) => q.name)));
+  return runs.map(({ quantities }) => (quantities.length === 0 ? null : new Map(quantities.map((/** @type {any} */ q) => {
+    const isMeasurement = !noiseless.has(q.name);
+    const [low, high] = isMeasurement ? q.models_measurement : q.models;
+    return [q.name, { mean: q.models_mean, low, high, isMeasurement }];
+  }))));
 }
 
 /** The value at x of the parabola, line or point through values. */
@@ -109,7 +115,7 @@ export function curve({ slips, loads, speeds, at }, quantity, { load, speed }) {
     const cells = loads.map((_, l) => speeds.map((_, v) => at[(s * loads.length + l) * speeds.length + v]?.get(quantity)));
     if (cells.some((row) => row.some((cell) => cell === undefined))) return [];
     const of = (/** @type {"mean" | "low" | "high"} */ key) => through(loads, cells.map((row) => through(speeds, row.map((cell) => /** @type {Spread} */ (cell)[key]), speed)), load);
-    return [{ slip, mean: of("mean"), low: of("low"), high: of("high") }];
+    return [{ slip, mean: of("mean"), low: of("low"), high: of("high"), isMeasurement: /** @type {Spread} */ (cells[0][0]).isMeasurement }];
   });
 }
 
@@ -145,7 +151,7 @@ export function atSlip(points, slip) {
     const m = slopes(xs, ys);
     return ys[k] * (1 + 2 * u) * (1 - u) ** 2 + h * m[k] * u * (1 - u) ** 2 + ys[k + 1] * u * u * (3 - 2 * u) + h * m[k + 1] * u * u * (u - 1);
   };
-  return { mean: of("mean"), low: of("low"), high: of("high") };
+  return { mean: of("mean"), low: of("low"), high: of("high"), isMeasurement: points[k].isMeasurement };
 }
 
 /** The conditions of a place that lie beyond the fitted runs. @returns {("slip" | "load" | "speed")[]} */

@@ -82,8 +82,19 @@ test("a typed prior takes the place of the proposed one, and what is no prior is
   assert.equal(n(typed("uniform", "0,9", "1.4")).bounds, null);
   assert.deepEqual(n(typed("normal", "1", "0.1")).bounds, [0.8, 2]);
   for (const bad of [typed("uniform", "2", "1"), typed("normal", "1", "0"), typed("fixed", "", "1")]) {
-    assert.equal(modelChoices.badPriors(bad).length, 1);
+    assert.equal(modelChoices.badPriors(bad, ["w"]).length, 1);
     assert.deepEqual(n(bad).numbers, [1.1, 0.2]);
   }
-  assert.deepEqual(modelChoices.badPriors(typed("fixed", "1", "")), []);
+  assert.deepEqual(modelChoices.badPriors(typed("fixed", "1", ""), ["w"]), []);
+});
+
+test("priors of models and wheels that are not chosen are not judged, and a loguniform prior is above 0", () => {
+  const typed = (models, name, form, ...texts) => ({ models, effects: [], search: "ask", changed: { [name]: { form, texts } } });
+  const bad = (wheels, ...of) => modelChoices.badPriors(typed(...of), wheels).length;
+  assert.equal(bad(["w"], ["rft"], "xi_n_pa_m", "loguniform", "2", "1"), 1);
+  assert.equal(bad(["w"], ["quasi_static"], "xi_n_pa_m", "loguniform", "2", "1"), 0);
+  assert.equal(bad(["a", "b"], ["rft"], "wheel_radius_m.b", "uniform", "2", "1"), 1);
+  assert.equal(bad(["a"], ["rft"], "wheel_radius_m.b", "uniform", "2", "1"), 0);
+  for (const low of ["0", "-1"]) assert.deepEqual(modelChoices.badPriors(typed(["rft"], "xi_n_pa_m", "loguniform", low, "1"), ["w"]), ["prior of xi n pa m: two numbers above 0, the smaller first"]);
+  assert.equal(bad(["w"], ["rft"], "xi_n_pa_m", "loguniform", "0,1", "1"), 0);
 });

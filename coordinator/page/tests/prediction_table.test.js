@@ -71,3 +71,19 @@ test("a slip that the model refuses leaves a gap", () => {
   assert.equal(points.length, 10);
   assert.equal(atSlip(points, 0), null);
 });
+
+test("an interval says whether it is that of new measurements, and a curve has one kind", () => {
+  const ranges = { slip: [0, 0.7], load: [50, 150], speed: [0.02, 0.02] };
+  const { plan, fill } = gridPlan("w", ranges, false);
+  const runs = answered(plan, (slip) => slip);
+  const place = { load: 90, speed: 0.02 };
+  assert.ok(curve(fill(runs), "q", place).every(({ isMeasurement }) => isMeasurement));
+  // One run whose noise is not known makes all intervals of the quantity those of the parameters.
+  const quantity = (run, more) => ({ quantities: [...run.quantities.map((q) => ({ ...q, ...more })), { ...run.quantities[0], name: "other" }] });
+  const points = curve(fill(runs.map((run, k) => quantity(run, k === 4 ? { models_measurement: null } : {}))), "q", place);
+  for (const point of points) assert.deepEqual([point.isMeasurement, point.low, point.high], [false, 0, 0]);
+  assert.equal(atSlip(points, 0.3).isMeasurement, false);
+  const other = curve(fill(runs.map((run) => quantity(run, { models_measurement: null }))), "other", place);
+  assert.equal(atSlip(other, 0.3).isMeasurement, true);
+  near(atSlip(other, 0.3).high - atSlip(other, 0.3).low, 2);
+});

@@ -4,6 +4,7 @@ import { test } from "node:test";
 import { table } from "../modules/chart/download.js";
 import { groups } from "../modules/words/group.js";
 import { levels, levelWords } from "../modules/words/level.js";
+import { measuredQuantities, statementOf } from "../modules/words/predicted_quantity.js";
 import { digits, duration, meanAndSd, numberOf, parameterName, probability, shown, size, tickWords, titled, withSd } from "../modules/words/quantity.js";
 import { meanErrorSd, residualSds } from "../modules/words/residual.js";
 import { progressWords } from "../modules/words/state.js";
@@ -155,4 +156,15 @@ test("the ends of an interval have the digits of their sd", () => {
   assert.deepEqual(withSd([0.9673, 1.2312, 1.111], 0.08), ["0.967", "1.231", "1.111"]);
   assert.deepEqual(withSd([8.419, 10.41, null], 0.61), ["8.42", "10.41", "–"]);
   assert.deepEqual(withSd([-0.95, 0.2], 0), ["−0.9500", "0.2000"]);
+});
+
+test("a statement is about a quantity that was measured, in SI", () => {
+  const all = [["drawbar_pull_n", "N"], ["torque_n_m", "N m"], ["sinkage_m", "m"], ["power_number", "1"]].map(([name, unit]) => ({ name, unit }));
+  const quantities = measuredQuantities(all, [{ channel: "torque" }, { channel: "sinkage" }]);
+  assert.deepEqual(quantities.map(({ name }) => name), ["torque_n_m", "sinkage_m", "power_number"]);
+  assert.equal(statementOf(quantities[0], ">", 3), "torque_n_m > 3");
+  const metres = 12 / shown("m").scale;
+  assert.equal(statementOf(quantities[1], "<", 12), `sinkage_m < ${metres}`);
+  assert.equal(statementOf(quantities[1], "<", null), null);
+  assert.equal(statementOf(undefined, "<", 12), null);
 });

@@ -4,7 +4,7 @@ import { html } from "../html.js";
 import { t } from "../language/language.js";
 import { slipUnit } from "../units.js";
 import { digits, shown, titled } from "../words/quantity.js";
-import { quantityName } from "../words/predicted_quantity.js";
+import { intervalName, quantityName } from "../words/predicted_quantity.js";
 import { Entry, Figure, fileName } from "./figure.js";
 import { Plot, STYLE } from "./library.js";
 
@@ -31,9 +31,9 @@ export function PredictionChart({ quantity, points, here, fitted, measured, name
       ...(here ? [Plot.ruleX([here], { x, y1: y("low"), y2: y("high"), stroke: "var(--series-1)", strokeWidth: 2.5 }), Plot.dot([here], { x, y: y("mean"), r: 6, symbol: "diamond", fill: "var(--series-1)", stroke: "var(--paper)" })] : []),
     ],
   });
-  const rows = () => points.map((point) => ({ slip: point.slip, quantity: quantity.name, unit: quantity.unit, mean: point.mean, low: point.low, high: point.high }));
+  const rows = () => points.map((point) => ({ slip: point.slip, quantity: quantity.name, unit: quantity.unit, mean: point.mean, low: point.low, high: point.high, interval: point.isMeasurement ? "measurement" : "parameters" }));
   return html`<${Figure} title=${title} name=${fileName(name, quantity.name, "predicted")} deps=${[points, here, measured, quantity.name]} draw=${draw} rows=${rows}
-    legend=${html`<${Entry} glyph=${html`<rect y="5" width="16" height="6" fill="var(--series-0)" opacity=".4" />`}>90 % of new measurements<//>
+    legend=${html`<${Entry} glyph=${html`<rect y="5" width="16" height="6" fill="var(--series-0)" opacity=".4" />`}>${intervalName(points.every((point) => point.isMeasurement))}<//>
       ${here && html`<${Entry} glyph=${html`<path d="M8 1 15 8 8 15 1 8Z" fill="var(--series-1)" />`}>${t`chosen slip: ${digits(here.mean * scale)} ${unit === "1" ? "" : unit}`}<//>`}
       ${measured.length > 0 && html`<${Entry} glyph=${html`<circle cx="8" cy="8" r="4" fill="var(--measured)" />`}>measured near this condition<//>`}
       ${beyond.length > 0 && html`<${Entry} glyph=${html`<rect y="2" width="16" height="12" fill="var(--rule)" opacity=".6" />`}>beyond the fitted slips<//>`}`} />`;

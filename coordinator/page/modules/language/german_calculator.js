@@ -3,7 +3,9 @@
 /** @type {Record<string, string>} */
 export const CALCULATOR = {
   "1.24 × radius": "1.24 × Radius",
+  "90 % by the parameters alone: the noise is not known": "90 % nur nach den Parametern: das Rauschen ist nicht bekannt",
   "90 % of new measurements": "90 % neuer Messungen",
+  "90 % of new measurements, or by the parameters alone": "90 % neuer Messungen, oder nur nach den Parametern",
   "A pilot runs …": "Ein Probelauf rechnet …",
   "A prior says what is known before the runs. job.toml takes other forms, too.":
     "Ein Prior sagt, was vor den Fahrten bekannt ist. job.toml nimmt auch andere Formen.",
@@ -61,12 +63,14 @@ export const CALCULATOR = {
   "No wheel run is fitted, so that nothing tells what a wheel would do.":
     "Keine Fahrt eines Rades ist angepasst; darum sagt nichts, was ein Rad tun würde.",
   "number {0} of the prior of {1}": "Zahl {0} des Priors von {1}",
+  "parameters alone": "nur nach den Parametern",
   "power number": "Leistungszahl",
   Predict: "Vorhersage",
   "Predict here": "Hier vorhersagen",
   "Predicted {0} by slip": "Vorhersage über dem Schlupf: {0}",
   "Predictions at the chosen condition": "Vorhersagen bei der gewählten Bedingung",
   "prior of {0}": "Prior von {0}",
+  "prior of {0}: two numbers above 0, the smaller first": "Prior von {0}: zwei Zahlen über 0, die kleinere zuerst",
   "prior of {0}: two numbers, the smaller first, or a mean and an sd above 0, or one number":
     "Prior von {0}: zwei Zahlen, die kleinere zuerst, oder Mittel und Standardabweichung über 0, oder eine Zahl",
   Priors: "Priors",
@@ -84,14 +88,14 @@ export const CALCULATOR = {
   "that a new measurement says so": "dass eine neue Messung es so zeigt",
   "The cost is not known: {0}.": "Die Kosten sind nicht bekannt: {0}.",
   "the measured runs": "die gemessenen Fahrten",
-  "The model rejected {0} % of its parameter vectors.": "Das Modell hat {0} % seiner Parameter abgelehnt.",
+  "The model rejected {0} % of its parameter vectors.": "Das Modell hat {0} % der Parametervektoren abgelehnt.",
   "The program computes the curves …": "Das Programm rechnet die Kurven …",
   "The search that may follow is not in it.": "Die Suche, die folgen kann, ist nicht enthalten.",
   "This model rolls over terrain: a prediction takes minutes.":
     "Dieses Modell rollt über Gelände: eine Vorhersage dauert Minuten.",
   "tractive efficiency": "Zugwirkungsgrad",
-  "What the calibrated models predict for a condition that nobody measured: mean and 90 % of new measurements, over all models of the study by their evidence. Straight travel on level ground.":
-    "Was die kalibrierten Modelle für eine Bedingung vorhersagen, die niemand gemessen hat: Mittel und 90 % neuer Messungen, über alle Modelle der Studie nach ihrer Evidenz. Geradeausfahrt auf ebenem Boden.",
+  "What the calibrated models predict for a condition that nobody measured: mean and 90 % of new measurements (by the parameters alone where the noise is not known), over all models of the study by their evidence. Straight travel on level ground.":
+    "Was die kalibrierten Modelle für eine Bedingung vorhersagen, die niemand gemessen hat: Mittel und 90 % neuer Messungen (nur nach den Parametern, wo das Rauschen nicht bekannt ist), über alle Modelle der Studie nach ihrer Evidenz. Geradeausfahrt auf ebenem Boden.",
   "What the job will do": "Was der Job tun wird",
   Wheel: "Rad",
   Whole: "Ganzes",

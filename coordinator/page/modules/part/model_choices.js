@@ -21,13 +21,20 @@ function numbersOf(/** @type {TypedPrior} */ { form, texts }) {
   const numbers = texts.slice(0, count(form)).map(numberOf);
   if (numbers.some((number) => number === null)) return null;
   const [a, b = 0] = /** @type {number[]} */ (numbers);
-  const isGood = form === "fixed" || (form === "normal" ? b > 0 : a < b);
+  const isGood = form === "fixed" || (form === "normal" ? b > 0 : a < b && (form !== "loguniform" || a > 0));
   return isGood ? /** @type {[number, number]} */ ([a, b]) : null;
 }
 
-/** What is wrong with priors that somebody typed. */
-export const badPriors = (/** @type {Choices} */ { changed }) => Object.entries(changed).filter(([, typed]) => numbersOf(typed) === null)
-  .map(([name]) => t`prior of ${words(name)}: two numbers, the smaller first, or a mean and an sd above 0, or one number`);
+/** The proposed priors of the chosen models and of these wheels; a radius is typed elsewhere, so that its numbers are NaN. */
+const shownPriors = (/** @type {Choices} */ { models }, /** @type {string[]} */ wheels) => template.priorsOf(wheels.map((name) => ({ name, radiusMm: NaN })))
+  .filter(({ of }) => of.some((kind) => models.includes(kind)));
+
+/** What is wrong with the priors that somebody typed, of those that are shown: the job has no others. */
+export function badPriors(/** @type {Choices} */ choices, /** @type {string[]} */ wheels) {
+  return shownPriors(choices, wheels).map(({ name }) => ({ name, typed: choices.changed[name] })).filter(({ typed }) => typed && numbersOf(typed) === null)
+    .map(({ name, typed }) => (typed.form === "loguniform" ? t`prior of ${words(name)}: two numbers above 0, the smaller first`
+      : t`prior of ${words(name)}: two numbers, the smaller first, or a mean and an sd above 0, or one number`));
+}
 
 /** The priors of a job: those of dry sands, and those that somebody typed in their place. */
 export function priorsOf(/** @type {Choices} */ { changed }, /** @type {{ name: string, radiusMm: number }[]} */ wheels) {
@@ -60,7 +67,7 @@ export function ModelChoices({ choices, wheels, change }) {
 /** The priors of the chosen models, each with its form and its numbers. */
 function Priors(/** @type {{ choices: Choices, wheels: string[], change: (choices: Choices) => void }} */ { choices, wheels, change }) {
   // The radius of a wheel is typed above: its prior goes from there to 1.24 times as much.
-  const rows = template.priorsOf(wheels.map((name) => ({ name, radiusMm: NaN }))).filter(({ of }) => of.some((kind) => choices.models.includes(kind)));
+  const rows = shownPriors(choices, wheels);
   const set = (/** @type {string} */ name, /** @type {TypedPrior} */ typed) => change({ ...choices, changed: { ...choices.changed, [name]: typed } });
   return html`
     <p class="note">A prior says what is known before the runs. job.toml takes other forms, too.</p>

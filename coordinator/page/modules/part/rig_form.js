@@ -46,7 +46,7 @@ export function RigForm({ runs, onFiles }) {
       })),
       ...[...channels.map(([c]) => [c, t`noise of ${noiseOf(c)}`]), ...PROPERTIES].filter(([key]) => isBad(value(key))).map(([, words]) => t`${words}: a number greater than 0, or nothing`),
       ...RANGES.filter(([key]) => ranges[key] && !(ranges[key][0] <= ranges[key][1])).map(([, words]) => t`limits of ${words}: two numbers, the smaller first`),
-      ...badPriors(choices),
+      ...badPriors(choices, names),
       ...(choices.models.length === 0 ? [t`choose a model`] : []),
       ...(soils.length > 1 ? [t`one soil: runs.csv has ${soils.join(", ")}, and an experiment has one`] : []),
     ];

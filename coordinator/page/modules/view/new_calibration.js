@@ -2,7 +2,7 @@
 
 import { experimentOf, fileOf, find, kindOf, missing, named, requests } from "../draft.js";
 import { author } from "../author.js";
-import { html, useEffect, useState } from "../html.js";
+import { html, useEffect, useRef, useState } from "../html.js";
 import { t } from "../language/language.js";
 import { DropZone } from "../part/drop_zone.js";
 import { FileCard } from "../part/file_card.js";
@@ -32,7 +32,7 @@ export function NewCalibration({ query }) {
   const [isSent, setSent] = useState(false);
   // What the service says of the job as it stands; nothing where it has changed since.
   const [checked, setChecked] = useState(/** @type {any} */ (null));
-  const [isChecked, setBusy] = useState(false);
+  const [isChecking, setChecking] = useState(false);
   // A calibration that runs, although its author and tags were not kept.
   const [begun, setBegun] = useState(/** @type {{ study: number, message: string } | null} */ (null));
   const examples = useAnswer(path.examples);
@@ -40,6 +40,8 @@ export function NewCalibration({ query }) {
   const of = (/** @type {string} */ kind) => Object.keys(files).filter((own) => kinds[own] === kind);
   const job = asked !== null && asked in files ? asked : of("job")[0] ?? null;
   const experiment = job === null ? null : experimentOf(files, job);
+  const draft = useRef({ files, job });
+  draft.current = { files, job };
   const change = (/** @type {Files} */ next) => {
     setFiles(next);
     setFailure(null);
@@ -90,16 +92,19 @@ export function NewCalibration({ query }) {
     await describe(study, { ...details, author: name || details.author, tags: words });
   };
   const look = async () => {
-    setBusy(true);
+    setChecking(true);
     setFailure(null);
     setChecked(null);
+    // A pilot takes a while: its answer counts only for the draft that it was asked about.
+    const isSame = () => draft.current.files === files && draft.current.job === job;
     try {
       const { experiment: rig, job: calibration } = requests(files, /** @type {string} */ (job), /** @type {string} */ (experiment));
-      setChecked(await check({ experiment: rig, ...calibration }));
+      const answer = await check({ experiment: rig, ...calibration });
+      if (isSame()) setChecked(answer);
     } catch (error) {
-      setFailure(error);
+      if (isSame()) setFailure(error);
     }
-    setBusy(false);
+    setChecking(false);
   };
   const start = async () => {
     setSent(true);
@@ -150,7 +155,7 @@ export function NewCalibration({ query }) {
       <label>Name <input value=${name} placeholder="as the study is listed" onInput=${(/** @type {any} */ e) => setName(e.target.value)} /></label>
       <label>Author <input value=${person} onInput=${(/** @type {any} */ e) => setPerson(e.target.value)} /></label>
       <label>Tags <input value=${tags} placeholder="sand, wheel 3" onInput=${(/** @type {any} */ e) => setTags(e.target.value)} /></label>
-      <button type="button" disabled=${absent.length > 0 || Boolean(table) || isChecked} onClick=${look}>${isChecked ? t`A pilot runs …` : t`Check, with its cost`}</button>
+      <button type="button" disabled=${absent.length > 0 || Boolean(table) || isChecking} onClick=${look}>${isChecking ? t`A pilot runs …` : t`Check, with its cost`}</button>
       <button class="main" type="button" disabled=${absent.length > 0 || Boolean(table) || isSent || begun !== null} onClick=${start}>${isSent ? t`It is being sent` : t`Start the calibration`}</button>
     </div>`}`;
 }

@@ -10,7 +10,7 @@ import { path, predict } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { loadWords, slipWords, speedWords } from "../words/condition.js";
 import { rimSpeed } from "../words/group.js";
-import { channelOf, quantityName, shownQuantities } from "../words/predicted_quantity.js";
+import { channelOf, intervalName, measuredQuantities, quantityName, shownQuantities, statementOf } from "../words/predicted_quantity.js";
 import { capital, digits, minus, numberOf, probability, shown, titled } from "../words/quantity.js";
 
 /** Draws of the grid: enough for a curve to follow the sliders; what stands still is computed with all draws. */
@@ -44,10 +44,11 @@ function Calculator(/** @type {{ study: any, model: any, rows: any[], fitted: an
   const [isAsked, setAsked] = useState(!isRolling);
   const grid = useGrid(isRolling ? null : model.id, place.wheel, reach, isRim);
   const limit = numberOf(statement.limit);
-  const rest = useAtRest(isAsked ? model.id : null, place, reach, isRim, quantity(chosen, statement.sign, limit, grid.quantities), isRolling);
-  const isMeasured = (/** @type {{ name: string }} */ { name }) => channelOf(name) === null || rows.some((row) => row.channel === channelOf(name));
-  const quantities = (rest.quantities.length > 0 ? rest.quantities : grid.quantities).filter(isMeasured);
+  // What the last answer at rest has; a model that rolls has no grid, so that only this tells which statements can be asked.
+  const [predicted, setPredicted] = useState(/** @type {{ name: string, unit: string }[]} */ ([]));
+  const quantities = measuredQuantities(predicted.length > 0 ? predicted : grid.quantities, rows);
   const found = quantities.find((q) => q.name === chosen) ?? quantities[0];
+  const rest = useAtRest(isAsked ? model.id : null, place, reach, isRim, statementOf(found, statement.sign, limit), isRolling, setPredicted);
   const source = rest.table ?? grid.table;
   const points = useMemo(() => (source && found ? table.curve(source, found.name, place) : []), [source, found?.name, place]);
   const spread = table.atSlip(points, place.slip);
@@ -58,7 +59,7 @@ function Calculator(/** @type {{ study: any, model: any, rows: any[], fitted: an
   const labels = { slip: t`slip`, load: t`wheel load`, speed: isRim ? t`speed of the rim` : t`sled speed` };
   const words = { slip: slipWords, load: loadWords, speed: speedWords };
   return html`
-    <p class="note">What the calibrated models predict for a condition that nobody measured: mean and 90 % of new measurements, over all models of the study by their evidence. Straight travel on level ground.</p>
+    <p class="note">What the calibrated models predict for a condition that nobody measured: mean and 90 % of new measurements (by the parameters alone where the noise is not known), over all models of the study by their evidence. Straight travel on level ground.</p>
     <div class="setting">
       <div class="controls">
         ${wheels.length > 1 && html`<p><label>Wheel <select onChange=${(/** @type {any} */ e) => set({ wheel: e.target.value })}>${wheels.map((wheel) => html`<option value=${wheel} selected=${wheel === place.wheel}>${wheel}</option>`)}</select></label></p>`}
@@ -80,31 +81,25 @@ function Calculator(/** @type {{ study: any, model: any, rows: any[], fitted: an
     </div>`;
 }
 
-/** A statement as the service reads it, in SI; null where it is not complete. */
-function quantity(/** @type {string} */ name, /** @type {string} */ sign, /** @type {number | null} */ limit, /** @type {{ name: string, unit: string }[]} */ all) {
-  const unit = all.find((q) => q.name === name)?.unit;
-  return limit === null || unit === undefined ? null : `${name} ${sign} ${limit / shown(unit).scale}`;
-}
-
-/** The grid of a wheel, asked once. */
+/** The grid of a wheel, asked once; it has no table until the answer for this wheel is there. */
 function useGrid(/** @type {number | null} */ id, /** @type {string} */ wheel, /** @type {table.Ranges} */ reach, /** @type {boolean} */ isRim) {
-  const [state, setState] = useState(/** @type {{ table: table.Table | null, quantities: any[], error: any }} */ ({ table: null, quantities: [], error: null }));
+  const [state, setState] = useState(/** @type {{ of: string, table: table.Table | null, quantities: any[], error: any }} */ ({ of: wheel, table: null, quantities: [], error: null }));
   useEffect(() => {
     if (id === null) return undefined;
     let isOver = false;
     const { plan, fill } = table.gridPlan(wheel, reach, isRim);
     predict(id, { plan, draws: GRID_DRAWS }).then(
-      ({ runs }) => isOver || setState({ table: fill(runs), quantities: quantitiesOf(runs), error: null }),
-      (error) => isOver || setState({ table: null, quantities: [], error }),
+      ({ runs }) => isOver || setState({ of: wheel, table: fill(runs), quantities: quantitiesOf(runs), error: null }),
+      (error) => isOver || setState({ of: wheel, table: null, quantities: [], error }),
     );
     return () => void (isOver = true);
   }, [id, wheel]);
-  return state;
+  return state.of === wheel ? state : { ...state, table: null, error: null };
 }
 
 /** The curve at a place where the sliders rest, and the probability of a statement there. */
-function useAtRest(/** @type {number | null} */ id, /** @type {table.Place} */ place, /** @type {table.Ranges} */ reach, /** @type {boolean} */ isRim, /** @type {string | null} */ statement, /** @type {boolean} */ isRolling) {
-  const nothing = { key: "", of: "", table: /** @type {table.Table | null} */ (null), quantities: /** @type {any[]} */ ([]), statement: /** @type {any} */ (null), draws: 0, error: /** @type {any} */ (null) };
+function useAtRest(/** @type {number | null} */ id, /** @type {table.Place} */ place, /** @type {table.Ranges} */ reach, /** @type {boolean} */ isRim, /** @type {string | null} */ statement, /** @type {boolean} */ isRolling, /** @type {(quantities: { name: string, unit: string }[]) => void} */ onQuantities) {
+  const nothing = { key: "", of: "", table: /** @type {table.Table | null} */ (null), statement: /** @type {any} */ (null), draws: 0, error: /** @type {any} */ (null) };
   const [state, setState] = useState(nothing);
   const of = [id, place.wheel, place.load, place.speed].join(" ");
   const key = [of, place.slip, statement].join(" ");
@@ -114,7 +109,11 @@ function useAtRest(/** @type {number | null} */ id, /** @type {table.Place} */ p
     const timer = setTimeout(() => {
       const { plan, fill, here } = table.curvePlan(place, reach, isRim);
       predict(id, { plan, statements: statement === null ? [] : [statement], ...(isRolling ? { draws: 20 } : {}) }).then(
-        ({ runs, draws }) => isOver || setState({ key, of, table: fill(runs), quantities: quantitiesOf(runs), statement: runs[here].statements[0] ?? null, draws, error: null }),
+        ({ runs, draws }) => {
+          if (isOver) return;
+          setState({ key, of, table: fill(runs), statement: runs[here].statements[0] ?? null, draws, error: null });
+          onQuantities(quantitiesOf(runs));
+        },
         (error) => isOver || setState({ ...nothing, key, of, error }),
       );
     }, REST_MS);
@@ -125,7 +124,7 @@ function useAtRest(/** @type {number | null} */ id, /** @type {table.Place} */ p
   }, [key]);
   if (state.key === key) return { ...state, isBusy: false };
   // The curve of a load and a speed holds at every slip; a statement does not.
-  return state.of === of ? { ...state, statement: null, isBusy: true } : { ...nothing, quantities: state.quantities, isBusy: true };
+  return state.of === of ? { ...state, statement: null, isBusy: true } : { ...nothing, isBusy: true };
 }
 
 const quantitiesOf = (/** @type {any[]} */ runs) => shownQuantities(runs.find((run) => run.quantities.length > 0) ?? { quantities: [] });
@@ -160,11 +159,12 @@ function Statement(/** @type {{ found: any, statement: any, change: (to: any) =>
 
 /** Every quantity at the chosen condition. */
 function Values(/** @type {{ source: table.Table, quantities: any[], place: table.Place }} */ { source, quantities, place }) {
-  const rows = quantities.map(({ name, unit }) => {
+  const all = quantities.map(({ name, unit }) => ({ name, unit, spread: table.atSlip(table.curve(source, name, place), place.slip) }));
+  const kinds = [...new Set(all.flatMap(({ spread }) => (spread ? [spread.isMeasurement] : [])))];
+  const rows = all.map(({ name, unit, spread }) => {
     const { unit: word, scale } = shown(unit);
-    const spread = table.atSlip(table.curve(source, name, place), place.slip);
     const value = (/** @type {number | undefined} */ v) => (v === undefined ? "–" : minus(digits(v * scale)));
-    return [capital(titled(quantityName(name), word)), value(spread?.mean), spread ? `${value(spread.low)}${t` to `}${value(spread.high)}` : "–"];
+    return [capital(titled(quantityName(name), word)), value(spread?.mean), spread ? `${value(spread.low)}${t` to `}${value(spread.high)}${kinds.length > 1 && !spread.isMeasurement ? ` (${t`parameters alone`})` : ""}` : "–"];
   });
-  return html`<${Table} label="Predictions at the chosen condition" head=${[t`at slip ${slipWords(place.slip)}`, t`mean`, t`90 % of new measurements`]} rows=${rows} numbers=${[1, 2]} />`;
+  return html`<${Table} label="Predictions at the chosen condition" head=${[t`at slip ${slipWords(place.slip)}`, t`mean`, kinds.length > 1 ? t`90 % of new measurements, or by the parameters alone` : intervalName(kinds[0] ?? true)]} rows=${rows} numbers=${[1, 2]} />`;
 }

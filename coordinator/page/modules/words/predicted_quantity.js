@@ -1,7 +1,7 @@
 // What a prediction gives, as words: the channels, and what follows from them.
 
 import { t } from "../language/language.js";
-import { channelName, words } from "./quantity.js";
+import { channelName, shown, words } from "./quantity.js";
 
 const CHANNELS = /** @type {Record<string, string>} */ ({ drawbar_pull_n: "drawbar_pull", torque_n_m: "torque", sinkage_m: "sinkage", lateral_force_n: "lateral_force" });
 const DERIVED = /** @type {Record<string, string>} */ ({
@@ -17,5 +17,23 @@ export const shownQuantities = (/** @type {any} */ run) => run.quantities.filter
 /** The name of a quantity as words, without its unit. */
 export const quantityName = (/** @type {string} */ name) => (CHANNELS[name] ? channelName(CHANNELS[name]) : DERIVED[name] ?? words(name));
 
+/** What the interval of a prediction is. */
+export const intervalName = (/** @type {boolean} */ isMeasurement) => (isMeasurement ? t`90 % of new measurements` : t`90 % by the parameters alone: the noise is not known`);
+
 /** The channel that a quantity is; null of what follows from channels. */
 export const channelOf = (/** @type {string} */ name) => CHANNELS[name] ?? null;
+
+/**
+ * The quantities that a campaign measured, and those that follow from channels.
+ * @param {{ name: string, unit: string }[]} quantities
+ * @param {{ channel: string }[]} rows of a comparison
+ */
+export const measuredQuantities = (quantities, rows) => quantities.filter(({ name }) => channelOf(name) === null || rows.some(({ channel }) => channel === channelOf(name)));
+
+/**
+ * A statement as the service reads it, in SI; null where it is not complete.
+ * @param {{ name: string, unit: string } | undefined} quantity
+ * @param {string} sign
+ * @param {number | null} limit in the unit that is shown
+ */
+export const statementOf = (quantity, sign, limit) => (limit === null || !quantity ? null : `${quantity.name} ${sign} ${limit / shown(quantity.unit).scale}`);
