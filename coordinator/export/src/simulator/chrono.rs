@@ -190,6 +190,7 @@ fn rig(model: &DrawnModel) -> Result<String, ExportError> {
         "chrono-version: 10.0
 
 # Load {load} N, slip {slip}, speed {speed} m/s, slip angle {slip_angle} deg. The motor of the wheel has the speed of that slip.
+# The masses give this load under a gravity of {gravity} m/s^2: set the system's gravity to [0, 0, -{gravity}].
 model:
   name: single_wheel_rig
   angle_degrees: true
@@ -276,6 +277,7 @@ model:
         value: {omega}
 ",
         load = condition.wheel_load_n,
+        gravity = model.variant.gravity_m_s2,
         slip = condition.slip,
         slip_angle = condition.slip_angle_deg,
         speed = condition.sled_speed_m_s,
@@ -308,13 +310,15 @@ the other parameters, because the unit of Bekker's moduli depends on n. `draws.c
 is added in your program, with the body `wheel` as what it touches.
 
 Units are SI, angles in degrees. Elastic K and Dampening R are Chrono's usual values: averages of steady runs do not determine them. A Janosi
-Shear of {AT_ONCE_M} m stands for shear that is mobilised at once.
+Shear of {AT_ONCE_M} m stands for shear that is mobilised at once. The masses of the rig are its load over a gravity of {} m/s^2: set the
+gravity of Chrono's system to this value.
 
 {missing}
 ",
         model.calibration,
         model.name,
-        model.draws.len()
+        model.draws.len(),
+        model.variant.gravity_m_s2
     )
 }
 
@@ -339,6 +343,9 @@ mod tests {
             Some("2000000,0,1.2,100,30,0.00001")
         );
         assert!(text("README.md").contains("has all effects"));
+        let gravity = super::super::fixture::model().variant.gravity_m_s2;
+        assert!(text("README.md").contains(&format!("gravity of {gravity} m/s^2")));
+        assert!(text("rig.yaml").contains(&format!("gravity to [0, 0, -{gravity}]")));
     }
 
     #[test]
