@@ -8,7 +8,7 @@ use crate::fit::PARAMETERS;
 const FAR: [f64; 3] = [1e3, 1e4, 1e5];
 /// A limit is reached where the law changes by less than this share of its size from one of these to the next.
 const REACHED: f64 = 0.02;
-/// Below this exponent a law grows as a logarithm does.
+/// With a smaller exponent, of either sign, a law changes as a logarithm does.
 const LEAST_EXPONENT: f64 = 0.08;
 /// Above this exponent a law grows as an exponential does.
 const MAX_EXPONENT: f64 = 12.0;
@@ -22,14 +22,14 @@ const STEP: f64 = 1e-4;
 pub enum Limit {
     /// It tends to a value: of the factor, or of the addition.
     Value(f64),
-    /// It grows in proportion to this power of the variable, with this sign.
+    /// It goes with this power of the variable, with this sign.
     Power {
-        /// Exponent.
+        /// Exponent: where the variable grows, a negative one is that of a law that falls to 0; where the variable falls, a positive one.
         exponent: f64,
         /// Sign of the law.
         sign: f64,
     },
-    /// It grows more slowly than any power, with this sign.
+    /// It changes more slowly than any power, with this sign.
     Logarithm {
         /// Sign of the law.
         sign: f64,
@@ -106,10 +106,11 @@ impl FittedFormula {
         if let Some(end) = ends.clone().find(|at| self.law(curve, *at).is_nan()) {
             return Limit::Ends(end);
         }
-        self.tends(curve, FAR.map(|far| self.law(curve, far * highest)))
+        self.tends(curve, FAR.map(|far| self.law(curve, far * highest)), 1.0)
     }
 
-    /// Returns where the law tends to as the variable goes to 0; `None` if the range reaches 0 or below.
+    /// Returns where the law tends to as the variable goes to 0; `None` if the range reaches 0 or below. Checked by
+    /// `limit::powers_have_the_exponent_of_the_variable_at_both_ends`.
     #[must_use]
     pub fn limit_below(&self, curve: &LocatedCurve) -> Option<Limit> {
         let lowest = curve.range()[0];
@@ -120,10 +121,14 @@ impl FittedFormula {
         if let Some(end) = halved.find(|at| self.law(curve, *at).is_nan()) {
             return Some(Limit::Ends(end));
         }
-        Some(self.tends(curve, FAR.map(|far| self.law(curve, lowest / far))))
+        Some(self.tends(curve, FAR.map(|far| self.law(curve, lowest / far)), -1.0))
     }
 
-    fn tends(&self, curve: &LocatedCurve, laws: [f64; 3]) -> Limit {
+    /// Returns where the law tends to by its values at 1e3, 1e4 and 1e5 ranges.
+    ///
+    /// # Arguments
+    /// - `direction`: 1 where the variable grows tenfold from one to the next, -1 where it falls to a tenth.
+    fn tends(&self, curve: &LocatedCurve, laws: [f64; 3], direction: f64) -> Limit {
         let [_, near, far] = laws;
         let size = match curve.host {
             Host::Factor => 1.0,
@@ -135,13 +140,18 @@ impl FittedFormula {
             return Limit::Value(far);
         }
         let sign = far.signum();
-        let exponent = libm::log10((far / near).abs());
-        if exponent.is_nan() || exponent >= MAX_EXPONENT {
+        let growth = libm::log10((far / near).abs());
+        if growth.is_nan() || growth >= MAX_EXPONENT {
             Limit::Exponential { sign }
-        } else if exponent < LEAST_EXPONENT {
+        } else if growth <= -MAX_EXPONENT {
+            Limit::Value(0.0)
+        } else if growth.abs() < LEAST_EXPONENT {
             Limit::Logarithm { sign }
         } else {
-            Limit::Power { exponent, sign }
+            Limit::Power {
+                exponent: direction * growth,
+                sign,
+            }
         }
     }
 }

@@ -187,14 +187,15 @@ impl Writer<'_> {
 
     fn part(&mut self, tree: &Tree) -> Part {
         let (left, right) = (tree.left.as_deref(), tree.right.as_deref());
-        let is = |tree: Option<&Tree>, op: Op| tree.is_some_and(|tree| tree.op == op);
-        let is_distance = matches!(tree.op, Op::Multiply | Op::Add | Op::Subtract);
-        if is_distance && is(left, Op::Constant) && is(right, Op::Variable) {
-            return self.distance(tree.op);
+        if is_length(tree) {
+            let length = self.length(tree).within(Level::Product);
+            return Part::new(Level::Product, format!("{length} / {:?}", self.scale));
+        }
+        if tree.op == Op::Multiply && is_of_constant_and_variable(tree) {
+            return self.over_scale();
         }
         let function = |name: &str, inner: Part| Part::new(Level::Atom, format!("{name}({})", inner.text));
         match (tree.op, left, right) {
-            (Op::Variable, ..) => Part::new(Level::Product, format!("{} / {:?}", self.variable, self.scale)),
             (Op::One, ..) => Part::new(Level::Atom, "1".into()),
             (Op::Threshold, ..) => {
                 let value = self.constant() * self.scale;
@@ -207,6 +208,14 @@ impl Writer<'_> {
                 Part::new(
                     Level::Sum,
                     format!("{a} {sign} {}", self.part(b).within(Level::Product)),
+                )
+            }
+            // The scale of both cancels.
+            (Op::Divide, Some(a), Some(b)) if is_length(a) && is_length(b) => {
+                let a = self.length(a).within(Level::Product);
+                Part::new(
+                    Level::Product,
+                    format!("{a} / {}", self.length(b).within(Level::Power)),
                 )
             }
             (Op::Multiply | Op::Divide, Some(a), Some(b)) => {
@@ -237,23 +246,42 @@ impl Writer<'_> {
         }
     }
 
-    /// Writes the variable over a scale, or its distance from a place.
-    fn distance(&mut self, op: Op) -> Part {
-        let (variable, scale, constant) = (self.variable, self.scale, self.constant());
-        if op == Op::Multiply {
-            let name = self.parameter(ParameterKind::Scale, scale / constant.abs());
-            return match constant < 0.0 {
-                true => Part::new(Level::Sum, format!("-{variable} / {name}")),
-                false => Part::new(Level::Product, format!("{variable} / {name}")),
-            };
+    /// Writes the variable over a scale of its own.
+    fn over_scale(&mut self) -> Part {
+        let (variable, constant) = (self.variable, self.constant());
+        let name = self.parameter(ParameterKind::Scale, self.scale / constant.abs());
+        match constant < 0.0 {
+            true => Part::new(Level::Sum, format!("-{variable} / {name}")),
+            false => Part::new(Level::Product, format!("{variable} / {name}")),
         }
-        let name = self.parameter(ParameterKind::Shift, constant * scale);
-        let distance = match op {
-            Op::Add => format!("({variable} + {name}) / {scale:?}"),
-            _ => format!("({name} - {variable}) / {scale:?}"),
-        };
-        Part::new(Level::Product, distance)
     }
+
+    /// Writes the variable or its distance from a place, in its unit.
+    fn length(&mut self, tree: &Tree) -> Part {
+        let variable = self.variable;
+        if tree.op == Op::Variable {
+            return Part::new(Level::Atom, variable.to_owned());
+        }
+        let shift = self.constant() * self.scale;
+        let name = self.parameter(ParameterKind::Shift, shift);
+        let distance = match tree.op {
+            Op::Add => format!("{variable} + {name}"),
+            _ => format!("{name} - {variable}"),
+        };
+        Part::new(Level::Sum, distance)
+    }
+}
+
+/// Returns whether an operation is on a constant and the variable.
+fn is_of_constant_and_variable(tree: &Tree) -> bool {
+    let is = |tree: Option<&Tree>, op: Op| tree.is_some_and(|tree| tree.op == op);
+    is(tree.left.as_deref(), Op::Constant) && is(tree.right.as_deref(), Op::Variable)
+}
+
+/// Returns whether a part is the variable or its distance from a place, over the magnitude of the variable.
+fn is_length(tree: &Tree) -> bool {
+    let is_distance = matches!(tree.op, Op::Add | Op::Subtract) && is_of_constant_and_variable(tree);
+    tree.op == Op::Variable || is_distance
 }
 
 /// The structure of a formula: `c` is a constant, `x` the variable.

@@ -21,6 +21,22 @@ fn laws_tend_to_what_their_formulas_say() {
 }
 
 #[test]
+fn powers_have_the_exponent_of_the_variable_at_both_ends() {
+    for power in [-0.3, 0.3] {
+        let curve = curve(Host::Addition, 0.0005, |x| 2.0 * x.powf(power));
+        let best = &answer(&curve).0.formulas[0];
+        for limit in [Some(best.limit_above(&curve)), best.limit_below(&curve)] {
+            assert!(
+                matches!(limit, Some(Limit::Power { exponent, sign })
+                    if (exponent - power).abs() < 0.05 && sign == 1.0),
+                "{power}: {limit:?} of {}",
+                best.tree
+            );
+        }
+    }
+}
+
+#[test]
 fn two_formulas_are_split_where_they_differ_most() {
     let curve = curve(Host::Addition, 0.1, |x| 1.0 - (-x / 0.6).exp());
     let answer = answer(&curve).0;

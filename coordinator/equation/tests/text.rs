@@ -41,6 +41,15 @@ fn a_formula_gives_the_law_that_was_fitted() {
 }
 
 #[test]
+fn the_magnitude_of_the_variable_cancels_in_a_ratio() {
+    let curve = curve(Host::Addition, 0.05, |x| 0.8 * x / (x + 0.3));
+    let answer = answer(&curve).0;
+    let formulas = answer.formulas.iter();
+    let mut texts = formulas.map(|formula| FormulaText::new(&curve, formula, "q", "x").formula);
+    assert!(texts.any(|text| text == "q + strength * x / (x + shift)"));
+}
+
+#[test]
 fn values_stand_in_the_place_of_names() {
     let curve = curve(Host::Addition, 0.01, |x| -3.0 * (1.0 - (-x / 0.22).exp()));
     let (answer, _) = answer(&curve);

@@ -11,7 +11,8 @@ use crate::error::PredictionError;
 /// Returns the model with one condition, and the parameters at the draws that predictions use.
 ///
 /// # Arguments
-/// - `stated`: the condition; what it leaves out is the median of the fitted runs.
+/// - `stated`: the condition; slip, load and speed that it leaves out are the medians of the fitted runs, the slip angle is 0, the pass 1, and
+///   the gravity the rig's.
 ///
 /// # Errors
 /// [`PredictionError::NoDraws`]; [`PredictionError::NoStoredDraws`]; [`PredictionError::Request`] names a quantity of the condition, or

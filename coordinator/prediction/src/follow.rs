@@ -125,16 +125,20 @@ pub fn parameters(spec: &Spec, updated: &UpdatedPosterior) -> Vec<FollowedParame
 /// Checked by `tests::a_campaign_stops_when_it_is_settled_or_no_run_helps`.
 pub fn stop(verdict: Verdict, next_runs: &[NextRun]) -> Option<String> {
     match verdict {
-        Verdict::Named | Verdict::Class | Verdict::NotInLibrary => {
-            Some("the matter is settled: what is missing is named".into())
-        }
+        Verdict::Named => Some("the matter is settled: what is missing is named".into()),
+        Verdict::NotInLibrary => Some(
+            "a law outside the catalogue is missing, and its quantity and variable are known".into(),
+        ),
+        Verdict::Class if next_runs.is_empty() => Some(
+            "something of a class of effects is missing, and no run that the rig could make would tell its effects apart".into(),
+        ),
         Verdict::NothingDetectable if next_runs.is_empty() => Some(
             "these data show nothing missing, and no explanation is left that a run could separate".into(),
         ),
         Verdict::Undecided if next_runs.is_empty() => {
             Some("no run that the rig could make would tell the explanations apart".into())
         }
-        Verdict::NothingDetectable | Verdict::Undecided => None,
+        Verdict::NothingDetectable | Verdict::Class | Verdict::Undecided => None,
     }
 }
 
@@ -164,6 +168,12 @@ mod tests {
         assert!(stop(Verdict::Named, &[run()]).unwrap().contains("settled"));
         assert!(stop(Verdict::Undecided, &[]).unwrap().contains("no run"));
         assert_eq!(stop(Verdict::Undecided, &[run()]), None);
+        // A run may tell the effects of a class apart.
+        assert_eq!(stop(Verdict::Class, &[run()]), None);
+        let class = stop(Verdict::Class, &[]).unwrap();
+        assert!(class.contains("class") && !class.contains("named"), "{class}");
+        let law = stop(Verdict::NotInLibrary, &[run()]).unwrap();
+        assert!(law.contains("law outside the catalogue"), "{law}");
     }
 
     #[test]

@@ -4,6 +4,7 @@ use job::PlannedRun;
 use result::NewMeasurements;
 use serde::{Deserialize, Serialize};
 use shared::channel::Channel;
+use statistics::ErrorLaw;
 use utoipa::ToSchema;
 
 use crate::ensemble::Simulated;
@@ -28,16 +29,29 @@ pub struct Expectation {
     pub contradicts: bool,
 }
 
-/// Compares the measurements of new runs with their predictive distribution, a mixture of normal densities over the draws of all models.
+/// A part of a predictive distribution: an error law about a mean.
+struct Part {
+    weight: f64,
+    mean: f64,
+    scale: f64,
+    law: ErrorLaw,
+}
+
+/// Compares the measurements of new runs with their predictive distribution, a mixture of the error laws of the jobs over the draws of
+/// all models.
 ///
 /// # Returns
-/// The tail probability `2 min(F, 1 - F)` of each measured channel of each run whose noise is known, `F = sum w Phi((y - m) / s)`. A run
-/// contradicts the others where it is below 0.001 over the number of its channels.
+/// The tail probability `2 min(F, 1 - F)` of each measured channel of each run whose noise is known, `F = sum w G((y - m) / s)`, G the
+/// normal or Student's t distribution of the errors. A run contradicts the others where it is below 0.001 over the number of its channels.
 /// Checked by `tests::a_measurement_far_out_contradicts`.
 pub fn expectations(simulated: &Simulated, measured: &[PlannedRun]) -> Vec<Expectation> {
     let models = simulated.models.iter();
-    let models: Vec<(f64, NewMeasurements<'_>)> = models
-        .map(|model| (model.weight, NewMeasurements::new(&model.calibration)))
+    let models: Vec<(f64, ErrorLaw, NewMeasurements<'_>)> = models
+        .map(|model| {
+            let calibration = &model.calibration;
+            let law = calibration.spec.likelihood.law();
+            (model.weight, law, NewMeasurements::new(calibration))
+        })
         .collect();
     let mut all = Vec::new();
     for (number, run) in measured.iter().enumerate() {
@@ -47,16 +61,20 @@ pub fn expectations(simulated: &Simulated, measured: &[PlannedRun]) -> Vec<Expec
                 continue;
             };
             let mut parts = Vec::new();
-            for (weight, new) in &models {
+            for (weight, law, new) in &models {
                 for measurement in new.at(simulated.first + number, channel) {
                     let components = measurement.components.iter();
-                    parts.extend(components.map(|c| (weight * c.weight, c.mean, c.scale)));
+                    parts.extend(components.map(|c| {
+                        Some(Part {
+                            weight: weight * c.weight,
+                            mean: c.mean,
+                            scale: c.scale?,
+                            law: *law,
+                        })
+                    }));
                 }
             }
-            let known: Option<Vec<(f64, f64, f64)>> = parts
-                .into_iter()
-                .map(|(weight, mean, scale)| Some((weight, mean, scale?)))
-                .collect();
+            let known: Option<Vec<Part>> = parts.into_iter().collect();
             let Some((expected, probability)) = known.as_deref().and_then(|parts| tail(parts, value)) else {
                 continue;
             };
@@ -73,21 +91,17 @@ pub fn expectations(simulated: &Simulated, measured: &[PlannedRun]) -> Vec<Expec
     all
 }
 
-/// Returns mean and two-sided tail probability of a mixture of normal densities: weights, means, standard deviations.
-fn tail(parts: &[(f64, f64, f64)], value: f64) -> Option<(f64, f64)> {
-    let total: f64 = parts.iter().map(|(weight, ..)| weight).sum();
+/// Returns mean and two-sided tail probability of a mixture.
+fn tail(parts: &[Part], value: f64) -> Option<(f64, f64)> {
+    let total: f64 = parts.iter().map(|part| part.weight).sum();
     if total <= 0.0 {
         return None;
     }
-    let mean = parts.iter().map(|(weight, mean, _)| weight * mean).sum::<f64>() / total;
+    let mean = parts.iter().map(|part| part.weight * part.mean).sum::<f64>() / total;
+    // The probability of a measurement farther along one direction.
     let side = |sign: f64| {
-        let parts = parts.iter();
-        let sum: f64 = parts
-            .map(|(weight, mean, sd)| {
-                weight * 0.5 * libm::erfc(sign * (value - mean) / (sd * std::f64::consts::SQRT_2))
-            })
-            .sum();
-        sum / total
+        let beyond = |part: &Part| part.weight * part.law.cumulative(sign * (part.mean - value) / part.scale);
+        parts.iter().map(beyond).sum::<f64>() / total
     };
     Some((mean, (2.0 * side(1.0).min(side(-1.0))).min(1.0)))
 }
@@ -96,17 +110,38 @@ fn tail(parts: &[(f64, f64, f64)], value: f64) -> Option<(f64, f64)> {
 mod tests {
     use super::*;
 
+    fn part(weight: f64, mean: f64, law: ErrorLaw) -> Part {
+        Part {
+            weight,
+            mean,
+            scale: 1.0,
+            law,
+        }
+    }
+
     #[test]
     fn a_measurement_far_out_contradicts() {
-        let parts = [(0.5, 0.0, 1.0), (0.5, 0.0, 1.0)];
+        let normal = ErrorLaw::Gaussian;
+        let parts = [part(0.5, 0.0, normal), part(0.5, 0.0, normal)];
         let probability = |value: f64| tail(&parts, value).unwrap().1;
         assert!((probability(0.0) - 1.0).abs() < 1e-12);
         assert!((probability(1.959_964) - 0.05).abs() < 1e-6);
         assert!((probability(-1.959_964) - 0.05).abs() < 1e-6);
         assert!(probability(4.0) < CONTRADICTS);
         // Between two models that disagree, a value of the less probable one is no contradiction.
-        let parts = [(0.9, 0.0, 1.0), (0.1, 10.0, 1.0)];
+        let parts = [part(0.9, 0.0, normal), part(0.1, 10.0, normal)];
         assert!(tail(&parts, 10.0).unwrap().1 > 0.05);
         assert_eq!(tail(&[], 1.0), None);
+    }
+
+    #[test]
+    fn a_measurement_far_out_is_no_contradiction_under_heavy_tails() {
+        let law = ErrorLaw::StudentT {
+            degrees_of_freedom: 4.0,
+        };
+        let probability = tail(&[part(1.0, 0.0, law)], 4.0).unwrap().1;
+        // By the closed form of the t with 4 degrees of freedom: 1 - u (3 - u^2) / 2 at u = 4 / sqrt(20).
+        assert!((probability - 0.016_130).abs() < 1e-6, "{probability}");
+        assert!(probability > CONTRADICTS);
     }
 }

@@ -406,7 +406,8 @@ pub struct ExportArguments {
     /// Of a table, the values of one quantity of its grid; repeat it for each quantity.
     #[arg(long, value_name = "NAME=FROM:TO:COUNT")]
     pub grid: Vec<String>,
-    /// Of table, fmu and chrono, a quantity of the condition; by default, the medians of the fitted runs.
+    /// Of table, fmu and chrono, a quantity of the condition; by default, slip, load and speed are the medians of the
+    /// fitted runs, the slip angle is 0, the pass 1, and the gravity the rig's.
     #[arg(long, value_name = "NAME=VALUE")]
     pub at: Vec<String>,
 }

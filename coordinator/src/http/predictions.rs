@@ -64,8 +64,8 @@ async fn decide(
 /// The model with its draws.
 ///
 /// What another program needs to simulate the calibrated model: the model with one condition, which it replaces by its own, and the
-/// parameters at each draw that predictions use. What the query leaves out of the condition is the median of the fitted runs. 422 of a model
-/// that is not ours.
+/// parameters at each draw that predictions use. Slip, load and speed that the query leaves out are the medians of the fitted runs, the slip
+/// angle is 0, the pass 1, and the gravity the rig's. 422 of a model that is not ours.
 #[utoipa::path(get, path = "/calibrations/{id}/drawn-model", operation_id = "get_drawn_model", tag = "results",
     params(
         ("id" = i64, Path),

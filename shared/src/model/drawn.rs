@@ -15,7 +15,8 @@ pub struct DrawnModel {
     pub name: String,
     /// Version of the equations that the calibration was computed by.
     pub model_version: String,
-    /// The model with one condition, which stands for what other programs set: the medians of the fitted runs, at slip 0.
+    /// The model with one condition, which stands for what other programs set: slip, load and speed are the medians
+    /// of the fitted runs unless they were stated.
     pub variant: ModelVariant,
     /// The parameters at each draw, in the order of the variant's free parameters.
     pub draws: Vec<Vec<f64>>,

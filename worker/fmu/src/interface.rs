@@ -59,9 +59,12 @@ impl Log {
 }
 
 /// Calls a function with an instance, and says why it fails.
+///
+/// # Arguments
+/// - `refused`: the status where the model refuses the condition; any other failure is `fmi3Error`.
 fn with(
     instance: *mut Instance,
-    failed: Status,
+    refused: Status,
     call: impl FnOnce(&mut Unit) -> Result<(), UnitError>,
 ) -> Status {
     // SAFETY: null, or the pointer to a live instance that no other call uses.
@@ -72,10 +75,19 @@ fn with(
     match catch_unwind(AssertUnwindSafe(|| call(unit))) {
         Ok(Ok(())) => OK,
         Ok(Err(error)) => {
-            log.say(failed, &error.to_string());
-            failed
+            let status = status(&error, refused);
+            log.say(status, &error.to_string());
+            status
         }
         Err(_) => FATAL,
+    }
+}
+
+/// Returns the status of a failure: another condition may succeed after a refusal alone.
+fn status(error: &UnitError, refused: Status) -> Status {
+    match error {
+        UnitError::Refused { .. } => refused,
+        _ => ERROR,
     }
 }
 
@@ -189,6 +201,7 @@ extern "C" fn fmi3EnterInitializationMode(
 ) -> Status {
     with(instance, ERROR, |unit| {
         unit.time_s = start_s;
+        unit.begin_initialisation();
         Ok(())
     })
 }
@@ -196,7 +209,10 @@ extern "C" fn fmi3EnterInitializationMode(
 /// Ends the initialisation: the outputs are those of the inputs so far. A refused condition is a warning, because inputs may follow.
 #[unsafe(no_mangle)]
 extern "C" fn fmi3ExitInitializationMode(instance: *mut Instance) -> Status {
-    with(instance, WARNING, Unit::simulate)
+    with(instance, WARNING, |unit| {
+        unit.end_initialisation();
+        unit.simulate()
+    })
 }
 
 /// Sets all variables to their start values.
@@ -278,7 +294,7 @@ access!(
     fmi3GetFloat64,
     *mut f64,
     elements_mut,
-    "Reads real variables.",
+    "Reads real variables. In the initialisation mode, the first reading of an output simulates.",
     |unit, reference, value| { *value = unit.real(reference)? }
 );
 access!(
@@ -343,4 +359,22 @@ extern "C" fn fmi3InstantiateModelExchange() -> *mut Instance {
 #[unsafe(no_mangle)]
 extern "C" fn fmi3InstantiateScheduledExecution() -> *mut Instance {
     std::ptr::null_mut()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_refused_condition_alone_may_be_discarded() {
+        let refused = UnitError::Refused {
+            refused: 2,
+            draws: 2,
+            first: String::new(),
+        };
+        assert_eq!(status(&refused, DISCARD), DISCARD);
+        assert_eq!(status(&refused, WARNING), WARNING);
+        assert_eq!(status(&UnitError::Model("no equations".into()), DISCARD), ERROR);
+        assert_eq!(status(&UnitError::Model("no equations".into()), WARNING), ERROR);
+    }
 }

@@ -26,6 +26,10 @@ pub(crate) struct Unit {
     /// Drawbar pull `[N]`, torque \[N m\], sinkage `[m]`, lateral force `[N]`; NaN where there is none.
     outputs: [f64; 4],
     draw: i32,
+    /// Whether a reading of an output simulates where inputs have changed: in the initialisation mode.
+    is_initialising: bool,
+    /// Whether the outputs are those of the inputs and the draw.
+    is_current: bool,
     /// Time `[s]`.
     pub(crate) time_s: f64,
 }
@@ -71,6 +75,8 @@ impl Unit {
             inputs: start,
             outputs: [f64::NAN; 4],
             draw: 0,
+            is_initialising: false,
+            is_current: false,
             time_s: 0.0,
             model,
         })
@@ -79,11 +85,32 @@ impl Unit {
     /// Sets all variables to their start values.
     pub(crate) fn reset(&mut self) {
         (self.inputs, self.outputs, self.draw) = (self.start, [f64::NAN; 4], 0);
+        (self.is_initialising, self.is_current) = (false, false);
         self.time_s = 0.0;
     }
 
-    /// Returns a real variable.
-    pub(crate) fn real(&self, reference: u32) -> Result<f64, UnitError> {
+    /// Enters the initialisation mode, in which outputs follow from the inputs at each reading.
+    pub(crate) fn begin_initialisation(&mut self) {
+        self.is_initialising = true;
+    }
+
+    /// Leaves the initialisation mode: outputs are those of the last simulation.
+    pub(crate) fn end_initialisation(&mut self) {
+        self.is_initialising = false;
+    }
+
+    /// Returns a real variable. In the initialisation mode an output is simulated first where it does not follow from the inputs yet.
+    ///
+    /// # Errors
+    /// [`UnitError::Variable`], [`UnitError::Model`]. A refused condition is none: the output is NaN, and the end of the mode says so.
+    pub(crate) fn real(&mut self, reference: u32) -> Result<f64, UnitError> {
+        let is_output = (FIRST_OUTPUT..DRAW).contains(&reference);
+        if is_output && self.is_initialising && !self.is_current {
+            match self.simulate() {
+                Ok(()) | Err(UnitError::Refused { .. }) => {}
+                Err(error) => return Err(error),
+            }
+        }
         let at = |values: &[f64; 4], first: u32| values.get(reference.checked_sub(first)? as usize).copied();
         let value = at(&self.outputs, FIRST_OUTPUT).or_else(|| at(&self.inputs, FIRST_INPUT));
         let value = value.or((reference == TIME).then_some(self.time_s));
@@ -119,6 +146,7 @@ impl Unit {
             });
         }
         self.inputs[input] = value;
+        self.is_current = false;
         Ok(())
     }
 
@@ -146,6 +174,7 @@ impl Unit {
             });
         }
         self.draw = value;
+        self.is_current = false;
         Ok(())
     }
 
@@ -165,6 +194,7 @@ impl Unit {
         }
         let compiled = CompiledVariant::new(&variant, &Arc::new(AllowedModels::default()))
             .map_err(|e| UnitError::Model(e.to_string()))?;
+        self.is_current = true;
         let draws = match usize::try_from(self.draw)
             .ok()
             .and_then(|draw| draw.checked_sub(1))
@@ -280,6 +310,34 @@ mod tests {
         let mean = pull_at(&mut unit, 0);
         assert!((mean - 0.5 * (pulls[0] + pulls[1])).abs() < 1e-12 * mean.abs());
         assert!((pulls[0] - pulls[1]).abs() > 1e-6);
+    }
+
+    #[test]
+    fn outputs_follow_from_the_inputs_in_the_initialisation_mode() {
+        let mut unit = Unit::new(model(), "t").unwrap();
+        unit.begin_initialisation();
+        let before = unit.real(FIRST_OUTPUT).unwrap();
+        assert!(before.is_finite());
+        unit.set_real(FIRST_INPUT, 0.3).unwrap();
+        let initial = unit.real(FIRST_OUTPUT).unwrap();
+        unit.set_real(2, 1e9).unwrap();
+        assert!(unit.real(FIRST_OUTPUT).unwrap().is_nan());
+        unit.reset();
+        unit.set_real(FIRST_INPUT, 0.3).unwrap();
+        let after = pull_at(&mut unit, 0);
+        assert_eq!(initial.to_bits(), after.to_bits());
+        assert_ne!(before.to_bits(), after.to_bits());
+        // A step alone changes outputs afterwards.
+        unit.set_real(FIRST_INPUT, 0.1).unwrap();
+        assert_eq!(unit.real(FIRST_OUTPUT).unwrap().to_bits(), after.to_bits());
+    }
+
+    #[test]
+    fn a_model_that_cannot_be_compiled_is_no_refused_condition() {
+        let mut unit = Unit::new(model(), "t").unwrap();
+        unit.model.variant.fixed.remove("k_phi");
+        let failed = unit.simulate();
+        assert!(matches!(failed, Err(UnitError::Model(_))), "{failed:?}");
     }
 
     #[test]

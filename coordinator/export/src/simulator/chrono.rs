@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 use shared::experiment::rim_speed_m_s;
 use shared::model::{DrawnModel, ModelKind};
-use shared::parameters::{WHEEL_RADIUS, bekker_moduli};
+use shared::parameters::{B_REF_M, WHEEL_RADIUS, Z_REF_M, bekker_moduli};
 
 use crate::error::ExportError;
 
@@ -29,7 +29,7 @@ const NAMES: [&str; 6] = [
 
 /// Returns the files of a folder by name.
 ///
-/// `soil.json` has the mean of each soil parameter, `terrain.json` names it, `rig.yaml` has the wheel on its carriage, `draws.csv` the
+/// `soil.json` has the mean soil of the draws, `terrain.json` names it, `rig.yaml` has the wheel on its carriage, `draws.csv` the
 /// soil at each draw, and `README.md` says how they are used.
 ///
 /// # Errors
@@ -50,16 +50,12 @@ pub fn chrono(model: &DrawnModel) -> Result<BTreeMap<String, Vec<u8>>, ExportErr
     let draws: Vec<[f64; 6]> = (0..model.draws.len())
         .map(|draw| soil(model, draw))
         .collect::<Result<_, _>>()?;
-    let mean: [f64; 6] = std::array::from_fn(|i| {
-        let values = draws.iter().map(|soil| soil[i]);
-        values.sum::<f64>() / draws.len() as f64
-    });
     let mut csv = NAMES.join(",") + "\n";
     for soil in &draws {
         csv += &(soil.map(|value| value.to_string()).join(",") + "\n");
     }
     let files = [
-        ("soil.json", pretty(&soil_file(&model.name, mean))),
+        ("soil.json", pretty(&soil_file(&model.name, mean_soil(&draws)))),
         ("terrain.json", pretty(&terrain_file(model))),
         ("rig.yaml", rig(model)?),
         ("draws.csv", csv),
@@ -91,6 +87,28 @@ fn soil(model: &DrawnModel, draw: usize) -> Result<[f64; 6], ExportError> {
         value("friction_angle_deg")?,
         shear_m,
     ])
+}
+
+/// Returns the mean of the soils.
+///
+/// The unit of Bekker's moduli depends on the exponent n, so they have no mean of their own. What is averaged is n, the logarithm of the
+/// pressure at the reference plate and sinkage, and the share of `k_c` in it; the moduli follow from these. Checked by
+/// `tests::the_mean_soil_has_the_mean_pressure_at_the_reference`.
+fn mean_soil(draws: &[[f64; 6]]) -> [f64; 6] {
+    let mean = |of: &dyn Fn(&[f64; 6]) -> f64| draws.iter().map(of).sum::<f64>() / draws.len() as f64;
+    let modulus = |soil: &[f64; 6]| soil[1] / B_REF_M + soil[0];
+    let n = mean(&|soil| soil[2]);
+    let share = mean(&|soil| soil[1] / B_REF_M / modulus(soil));
+    let log_pressure = mean(&|soil| libm::log(modulus(soil)) + soil[2] * libm::log(Z_REF_M));
+    let sum = libm::exp(log_pressure - n * libm::log(Z_REF_M));
+    [
+        (1.0 - share) * sum,
+        share * sum * B_REF_M,
+        n,
+        mean(&|soil| soil[3]),
+        mean(&|soil| soil[4]),
+        mean(&|soil| soil[5]),
+    ]
 }
 
 fn pretty(value: &Value) -> String {
@@ -172,6 +190,7 @@ fn rig(model: &DrawnModel) -> Result<String, ExportError> {
         "chrono-version: 10.0
 
 # Load {load} N, slip {slip}, speed {speed} m/s, slip angle {slip_angle} deg. The motor of the wheel has the speed of that slip.
+# The masses give this load under a gravity of {gravity} m/s^2: set the system's gravity to [0, 0, -{gravity}].
 model:
   name: single_wheel_rig
   angle_degrees: true
@@ -258,6 +277,7 @@ model:
         value: {omega}
 ",
         load = condition.wheel_load_n,
+        gravity = model.variant.gravity_m_s2,
         slip = condition.slip,
         slip_angle = condition.slip_angle_deg,
         speed = condition.sled_speed_m_s,
@@ -284,18 +304,21 @@ fn read_me(model: &DrawnModel) -> String {
     format!(
         "# Calibration {}: {}
 
-`soil.json` has the mean of each soil parameter over {} draws of the posterior, `draws.csv` each draw: simulate some of them for an
-interval. `terrain.json` is a terrain with this soil. `rig.yaml` is the wheel on its rig, for Chrono's reader of multi-body models; the terrain
+`soil.json` has the mean soil of {} draws of the posterior: of n, of the logarithm of the pressure at the reference plate and sinkage, and of
+the other parameters, because the unit of Bekker's moduli depends on n. `draws.csv` has each draw: simulate some of them for an interval.
+`terrain.json` is a terrain with this soil. `rig.yaml` is the wheel on its rig, for Chrono's reader of multi-body models; the terrain
 is added in your program, with the body `wheel` as what it touches.
 
 Units are SI, angles in degrees. Elastic K and Dampening R are Chrono's usual values: averages of steady runs do not determine them. A Janosi
-Shear of {AT_ONCE_M} m stands for shear that is mobilised at once.
+Shear of {AT_ONCE_M} m stands for shear that is mobilised at once. The masses of the rig are its load over a gravity of {} m/s^2: set the
+gravity of Chrono's system to this value.
 
 {missing}
 ",
         model.calibration,
         model.name,
-        model.draws.len()
+        model.draws.len(),
+        model.variant.gravity_m_s2
     )
 }
 
@@ -309,7 +332,7 @@ mod tests {
         let text = |name: &str| String::from_utf8(files[name].clone()).unwrap();
         let file: Value = serde_json::from_str(&text("soil.json")).unwrap();
         let soil = &file["Soil Parameters"];
-        assert_eq!(soil["Bekker Kphi"], 2e6);
+        assert!((soil["Bekker Kphi"].as_f64().unwrap() - 2e6).abs() < 1e-3);
         assert!((soil["Bekker n"].as_f64().unwrap() - 1.1).abs() < 1e-12);
         assert_eq!(soil["Mohr Friction"], 30.0);
         assert_eq!(soil["Mohr Cohesion"], 100.0);
@@ -320,5 +343,22 @@ mod tests {
             Some("2000000,0,1.2,100,30,0.00001")
         );
         assert!(text("README.md").contains("has all effects"));
+        let gravity = super::super::fixture::model().variant.gravity_m_s2;
+        assert!(text("README.md").contains(&format!("gravity of {gravity} m/s^2")));
+        assert!(text("rig.yaml").contains(&format!("gravity to [0, 0, -{gravity}]")));
+    }
+
+    #[test]
+    fn the_mean_soil_has_the_mean_pressure_at_the_reference() {
+        // The same pressure and ratio of moduli at two exponents: k_phi differs by a factor of 16.
+        let draws = [0.8, 1.4].map(|n| {
+            let (k_c, k_phi) = bekker_moduli(4.0, 0.25, n);
+            [k_phi, k_c, n, 100.0, 30.0, 0.01]
+        });
+        let [k_phi, k_c, n, ..] = mean_soil(&draws);
+        let pressure = (k_c / B_REF_M + k_phi) * libm::pow(Z_REF_M, n);
+        assert!((pressure - 1e4).abs() < 1e-6, "{pressure} Pa");
+        assert!((k_c / (k_phi * B_REF_M) - 0.25).abs() < 1e-12);
+        assert!((n - 1.1).abs() < 1e-12);
     }
 }

@@ -94,11 +94,12 @@ pub(super) fn description(model: &DrawnModel) -> String {
          description=\"number of a draw of the posterior, from 1; 0: the mean over all draws\"/>"
     );
     xml += "  </ModelVariables>\n  <ModelStructure>\n";
-    for (tag, of) in [("Output", OUTPUTS), ("InitialUnknown", OUTPUTS)] {
-        for (reference, ..) in of {
+    // Initial values also follow from the parameter, the draw.
+    for (tag, dependencies) in [("Output", "1 2 3 4"), ("InitialUnknown", "1 2 3 4 9")] {
+        for (reference, ..) in OUTPUTS {
             let _ = writeln!(
                 xml,
-                "    <{tag} valueReference=\"{reference}\" dependencies=\"1 2 3 4\"/>"
+                "    <{tag} valueReference=\"{reference}\" dependencies=\"{dependencies}\"/>"
             );
         }
     }
@@ -113,6 +114,13 @@ fn escaped(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn initial_values_depend_on_the_draw() {
+        let xml = description(&super::super::fixture::model());
+        assert!(xml.contains("<Output valueReference=\"5\" dependencies=\"1 2 3 4\"/>"));
+        assert!(xml.contains("<InitialUnknown valueReference=\"8\" dependencies=\"1 2 3 4 9\"/>"));
+    }
 
     #[test]
     fn names_are_escaped() {

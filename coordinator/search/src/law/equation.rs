@@ -143,7 +143,7 @@ fn limit(dependence: &Dependence, limit: Limit, end: &str) -> String {
             )
         }
         Limit::Logarithm { sign } => {
-            format!("{} grows more slowly than any power of {variable}", side(sign))
+            format!("{} changes more slowly than any power of {variable}", side(sign))
         }
         Limit::Exponential { sign } => format!("{} grows exponentially with {variable}", side(sign)),
         Limit::Ends(at) => match dependence.variable().unit_name() {
