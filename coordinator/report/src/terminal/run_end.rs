@@ -50,7 +50,9 @@ pub fn run_end(tables: &str, story: &Story, folder: &Path, width: usize) -> Stri
     let mut texts = written(&heights);
     loop {
         let now: Vec<usize> = texts.iter().map(|text| text.lines().count()).collect();
-        let longest = (0..now.len()).max_by_key(|&i| now[i]);
+        // What is missing and what comes next lose lines last.
+        let is_detail = |i: usize| now[i] > 1 && !["missing:", "next:"].contains(&sentences[i].0);
+        let longest = (0..now.len()).max_by_key(|&i| (is_detail(i), now[i]));
         match longest.filter(|&i| now[i] > 1 && now.iter().sum::<usize>() > left) {
             Some(i) => heights[i] = now[i] - 1,
             None => break,
