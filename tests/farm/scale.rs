@@ -26,7 +26,9 @@ echo $$
 const SQUEUE: &str = r#"#!/bin/sh
 for job in "$QUEUE"/*.job; do
     [ -e "$job" ] || exit 0
-    if kill -0 "$(cat "$job")" 2>/dev/null; then echo "$(basename "$job" .job) RUNNING"; else rm "$job"; fi
+    # The test and the program look at the queue at the same time.
+    process=$(cat "$job" 2>/dev/null) || continue
+    if kill -0 "$process" 2>/dev/null; then echo "$(basename "$job" .job) RUNNING"; else rm -f "$job"; fi
 done
 "#;
 const SCANCEL: &str = r#"#!/bin/sh
