@@ -14,7 +14,7 @@ const TABLES: usize = 8;
 /// The beginning of a line that says why numbers may be wrong. Such lines follow each other.
 const CAUTION: &str = "caution: ";
 
-/// Returns the tables of a study, its story, and where its files are, in at most [`LINES`] lines. Sentences that are longer lose their last
+/// Returns the tables of a study, its story, and where its files are, in at most fifteen lines. Sentences that are longer lose their last
 /// clauses.
 ///
 /// # Arguments
