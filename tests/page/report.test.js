@@ -56,7 +56,7 @@ test("a summary of two pages is printed, with the story first", async () => {
   try {
     await page.locator("section#story figure .plot svg").first().waitFor();
     await page.locator("section#compare figure .plot svg").first().waitFor();
-    assert.match(await page.locator("header").textContent(), /20\d\d-\d\d-\d\d; 24 fitted runs, 16 held out; Grouser \d/);
+    assert.match(await page.locator("header").textContent(), /20\d\d-\d\d-\d\d; 24 fitted runs, 16 held out; wheel w; slip 0.05 to 0.7, load 60 to 150 N, speed 4 to 76 mm\/s; Grouser \d/);
     await page.evaluate(() => { globalThis.print = () => document.body.classList.add("asked"); });
     await page.getByRole("button", { name: "Print a summary" }).click();
     assert.equal(await page.locator("body.brief.asked").count(), 1);
