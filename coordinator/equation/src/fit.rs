@@ -6,7 +6,7 @@ use crate::curve::LocatedCurve;
 use crate::program::{ConstantRole, Program};
 use crate::tree::CONSTANTS;
 
-/// Most parameters of a formula: its strength and its constants.
+/// The largest number of parameters that a formula has: its strength and its constants.
 pub(crate) const PARAMETERS: usize = 1 + CONSTANTS;
 /// Prior sd of the strength, over the root mean square of the curve, where the formula has a root mean square of 1.
 const STRENGTH_SD: f64 = 2.0;

@@ -1,4 +1,4 @@
-//! What is known of an engine while a step of it is being taken on another thread.
+//! The outline of an engine, which answers questions about it while a compute thread takes a step of it.
 
 use shared::api::{Position, SearchProgress};
 

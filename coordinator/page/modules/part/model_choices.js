@@ -1,4 +1,4 @@
-// What is computed: models, priors and effects with their meaning, and what follows the calibration.
+// The form that chooses models, priors and effects by their meaning, and the search that follows the calibration.
 
 import { html, useState } from "../html.js";
 import { t } from "../language/language.js";

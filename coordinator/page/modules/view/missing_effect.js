@@ -31,7 +31,7 @@ export function MissingEffect({ study, model, query, reload }) {
   const [failure, setFailure] = useState(/** @type {any} */ (null));
   const [isBusy, setBusy] = useState(false);
   if (!model) return html`<p class="empty">No calibration of this study is finished yet.</p>`;
-  // Whoever gets the address sees the same curves.
+  // The address holds the choice, so that everybody who opens it sees the same curves.
   const keep = (/** @type {string | null} */ effect) => {
     setKept(effect);
     if (!isReport) replace(address(["studies", study.id, "effects"], { ...query, effect }));

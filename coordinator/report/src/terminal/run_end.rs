@@ -50,7 +50,7 @@ pub fn run_end(tables: &str, story: &Story, folder: &Path, width: usize) -> Stri
     let mut texts = written(&heights);
     loop {
         let now: Vec<usize> = texts.iter().map(|text| text.lines().count()).collect();
-        // What is missing and what comes next lose lines last.
+        // The sentences about the missing effect and the next step are shortened last.
         let is_detail = |i: usize| now[i] > 1 && !["missing:", "next:"].contains(&sentences[i].0);
         let longest = (0..now.len()).max_by_key(|&i| (is_detail(i), now[i]));
         match longest.filter(|&i| now[i] > 1 && now.iter().sum::<usize>() > left) {

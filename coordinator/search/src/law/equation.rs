@@ -13,7 +13,7 @@ use record::{LawFormula, LawFormulas, SplittingCondition};
 use super::dependence::{Dependence, SOURCE};
 use super::range::rounded;
 
-/// Most nodes of a formula, without its strength.
+/// The largest number of nodes that a formula has, without its strength.
 const SIZE: usize = 7;
 /// The leading classes are recorded until they have this probability together, or are so many.
 const RECORDED: f64 = 0.95;
