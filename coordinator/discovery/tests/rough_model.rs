@@ -242,3 +242,32 @@ fn what_the_low_fidelity_model_does_not_show_is_screened_on_the_model() {
     });
     assert_eq!(leader(&blind).class, blind.effect(Some(truth)).unwrap().class);
 }
+
+#[test]
+fn where_the_base_meets_rejected_parameters_no_effect_is_tried_beyond_them() {
+    const REJECTED_FROM: f64 = 0.25;
+    let truth = 13;
+    let settings = SearchSettings {
+        smoothness: Smoothness::Rough,
+        has_numerical_noise: true,
+        ..SearchSettings::default()
+    };
+    let likelihood = Likelihood::new(data_of(truth)).unwrap();
+    let rejected = std::cell::RefCell::new(std::collections::BTreeMap::new());
+    let ranking = run(likelihood, &settings, |request| {
+        if request.theta[0] > REJECTED_FROM {
+            *rejected.borrow_mut().entry(request.candidate).or_insert(0) += 1;
+            return None;
+        }
+        Some(predicted(&request.theta, request.candidate, Smoothness::Rough))
+    });
+    assert_eq!(leader(&ranking).class, ranking.effect(Some(truth)).unwrap().class);
+    let rejected = rejected.into_inner();
+    assert!(rejected[&None] > 0, "the base leads to rejected parameters");
+    // Those that are confirmed are tried from other starts.
+    let of_screened = rejected.iter().filter(|(candidate, _)| {
+        let effect = ranking.effect(**candidate);
+        effect.is_some_and(|effect| effect.method < EvidenceMethod::Refined)
+    });
+    assert_eq!(of_screened.count(), 0, "{rejected:?}");
+}

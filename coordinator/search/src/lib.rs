@@ -6,11 +6,12 @@
 //! - [`untried`]: effects that need a property which the experiment does not state.
 //! - `models`: the models of a search, made when they are queried. `entry`: their candidates. `reduced_model`: the base without one of its effects. `family`: candidates that are tried
 //!   together. `design`: levels of the design, and runs that the rig could make.
-//! - `search`: a search in progress, as leases take it.
+//! - `search`: a search in progress, as leases take it. `answers`: what the model has answered already.
 //! - `discovery_record`: its result as it is stored. `curves`: the predictions of its explanations. `narrative`: its verdict in one
 //!   sentence. `remaining_misfit`: the misfit that remains. `rig_errors`: errors that sessions and tarings share.
 //! - `bench_measurement`: measurements without a rolling wheel that distinguish explanations.
 
+mod answers;
 mod bench_measurement;
 pub mod candidate;
 mod curves;

@@ -1,12 +1,13 @@
 //! A search in progress: its queries as leases take them, and their answers.
 
-use discovery::DiscoverySearch;
+use discovery::{DiscoverySearch, Smoothness};
 use inference::{Proposal, TellProgress};
 use shared::api::{SearchLeader, SearchProgress};
 use shared::file::FileError;
 use shared::model::ModelVariant;
 use shared::outcome::Observables;
 
+use super::answers::{Answer, Answers};
 use super::discovery_record::discovery_record;
 use super::models::SearchModels;
 use record::Discovery;
@@ -18,6 +19,10 @@ pub struct RunningDiscovery {
     search: DiscoverySearch,
     /// Of each query of the round: the hash of its variant, and the parameters in the variant's order.
     leases: Vec<(String, Vec<f64>)>,
+    /// The queries of the round that wait for the model.
+    pending: Vec<Proposal>,
+    /// `None` where an evaluation costs less than its answer's memory.
+    answers: Option<Answers>,
 }
 
 /// The error with which a search cannot begin or continue.
@@ -40,13 +45,51 @@ impl RunningDiscovery {
     /// # Errors
     /// [`DiscoveryError`].
     pub fn new(models: SearchModels) -> Result<Self, DiscoveryError> {
+        let task = models.task();
+        let is_cheap = task.settings.smoothness == Smoothness::Smooth;
         let mut running = Self {
-            search: DiscoverySearch::new(models.task())?,
+            search: DiscoverySearch::new(task)?,
             models,
             leases: Vec::new(),
+            pending: Vec::new(),
+            answers: (!is_cheap).then(Answers::default),
         };
-        running.prepare()?;
+        running.begin_round()?;
         Ok(running)
+    }
+
+    /// Begins rounds until one has a query without a known answer, or the search ends.
+    fn begin_round(&mut self) -> Result<TellProgress, DiscoveryError> {
+        loop {
+            self.prepare()?;
+            let (known, unknown) = self.known_and_unknown();
+            self.pending = unknown;
+            let mut progress = TellProgress::Waiting;
+            for (index, values) in &known {
+                progress = self.search.tell(*index, values.as_deref())?;
+            }
+            match progress {
+                TellProgress::Waiting => return Ok(TellProgress::NextRound),
+                TellProgress::NextRound => {}
+                over => return Ok(over),
+            }
+        }
+    }
+
+    /// Returns the queries of the round whose answers are known, and of the others the first of each evaluation.
+    fn known_and_unknown(&self) -> (Vec<(usize, Answer)>, Vec<Proposal>) {
+        let Some(answers) = &self.answers else {
+            return (Vec::new(), self.search.pending().to_vec());
+        };
+        let (mut known, mut unknown) = (Vec::new(), Vec::new());
+        for (proposal, lease) in self.search.pending().iter().zip(&self.leases) {
+            match answers.find(lease) {
+                Some(values) => known.push((proposal.particle, values.clone())),
+                None if self.leases[..proposal.particle].contains(lease) => {}
+                None => unknown.push(proposal.clone()),
+            }
+        }
+        (known, unknown)
     }
 
     /// Makes the variants of the round, and its leases.
@@ -78,9 +121,9 @@ impl RunningDiscovery {
         }
     }
 
-    /// Returns the queries of this round.
+    /// Returns the queries of this round that wait for the model.
     pub fn pending(&self) -> &[Proposal] {
-        self.search.pending()
+        &self.pending
     }
 
     /// Returns the hash of a query's variant, and its parameters.
@@ -105,9 +148,16 @@ impl RunningDiscovery {
     /// # Errors
     /// [`DiscoveryError`].
     pub fn tell(&mut self, particle: usize, values: Option<&[f64]>) -> Result<TellProgress, DiscoveryError> {
-        let progress = self.search.tell(particle, values)?;
+        let mut progress = self.search.tell(particle, values)?;
+        if let (Some(answers), Some(lease)) = (&mut self.answers, self.leases.get(particle)) {
+            answers.insert(lease, values);
+            let queries = self.leases.iter().enumerate();
+            for (twin, _) in queries.filter(|(index, other)| *index != particle && *other == lease) {
+                progress = self.search.tell(twin, values)?;
+            }
+        }
         if progress == TellProgress::NextRound {
-            self.prepare()?;
+            return self.begin_round();
         }
         Ok(progress)
     }
@@ -116,5 +166,46 @@ impl RunningDiscovery {
     pub fn record(&self) -> Option<Discovery> {
         let conclusion = self.search.conclusion()?;
         Some(discovery_record(&self.models, conclusion))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::fixture::read;
+
+    /// Runs rounds of a search whose model is a function of its parameters; returns the number of evaluations, and of those that were
+    /// asked before.
+    fn evaluated(kind: &str, rounds: u64) -> (usize, usize) {
+        let (mut job, files, _) = read("examples/cmu-sand");
+        let kind = format!("kind = \"{kind}\"");
+        job.toml = job.toml.replacen("kind = \"quasi_static\"", &kind, 1);
+        let mut search = RunningDiscovery::new(SearchModels::new(&job, &files, 2).unwrap()).unwrap();
+        let values = search.models.task().likelihood.values();
+        let mut evaluations = BTreeSet::new();
+        let mut asked = 0;
+        while search.round() < rounds && search.record().is_none() {
+            for proposal in search.pending().to_vec() {
+                let (hash, theta) = search.lease(proposal.particle).unwrap();
+                let sum: f64 = theta.iter().sum();
+                let predicted: Vec<f64> = (0..values).map(|i| libm::sin(sum + i as f64)).collect();
+                let bits: Vec<u64> = theta.iter().map(|value| value.to_bits()).collect();
+                evaluations.insert((hash.to_owned(), bits));
+                asked += 1;
+                search.tell(proposal.particle, Some(&predicted)).unwrap();
+            }
+        }
+        (asked, asked - evaluations.len())
+    }
+
+    #[test]
+    fn a_search_of_an_expensive_model_asks_for_no_evaluation_twice() {
+        let (asked, repeated) = evaluated("scm", 60);
+        assert!(asked > 300, "{asked}");
+        assert_eq!(repeated, 0);
+        // The same rounds of a cheap model repeat some.
+        assert!(evaluated("quasi_static", 60).1 > 0);
     }
 }

@@ -160,8 +160,9 @@ fn searched(job: &FileSet, experiment: &FileSet) -> Result<Discovery, Prediction
         if let Some(found) = running.record() {
             return Ok(found);
         }
-        let count = running.pending().len();
-        let answer = |particle: usize| -> Result<Option<Vec<f64>>, String> {
+        let asked: Vec<usize> = running.pending().iter().map(|query| query.particle).collect();
+        let answer = |place: usize| -> Result<Option<Vec<f64>>, String> {
+            let particle = asked[place];
             let Some((variant, theta)) = running
                 .lease(particle)
                 .and_then(|(hash, theta)| Some((running.variant(hash)?, theta)))
@@ -174,13 +175,13 @@ fn searched(job: &FileSet, experiment: &FileSet) -> Result<Discovery, Prediction
                 Outcome::Fault(fault) => return Err(fault.message),
             })
         };
-        let answers = in_parallel(count, answer).map_err(PredictionError::Model)?;
-        if count == 0 {
+        let answers = in_parallel(asked.len(), answer).map_err(PredictionError::Model)?;
+        if asked.is_empty() {
             return Err(PredictionError::Model(
                 "the search has ended without a result".into(),
             ));
         }
-        for (particle, values) in answers.into_iter().enumerate() {
+        for (particle, values) in asked.into_iter().zip(answers) {
             let values = values.map_err(PredictionError::Model)?;
             running.tell(particle, values.as_deref()).map_err(|e| model(&e))?;
         }

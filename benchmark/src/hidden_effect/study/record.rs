@@ -27,20 +27,20 @@ pub fn record(
         if let Some(record) = search.record() {
             return Ok(record);
         }
-        let count = search.pending().len();
+        let asked: Vec<usize> = search.pending().iter().map(|query| query.particle).collect();
         let lease = |index: usize| search.lease(index).ok_or("no query is pending");
-        for index in 0..count {
+        for &index in &asked {
             let (hash, _) = lease(index)?;
             if !evaluates.contains_key(hash) {
                 let variant = search.variant(hash).ok_or("a variant is missing")?;
                 evaluates.insert(hash.to_owned(), Evaluate::new(variant)?);
             }
         }
-        let outcomes = each_on(threads, count as u64, |index| {
-            let (hash, theta) = lease(index as usize)?;
+        let outcomes = each_on(threads, asked.len() as u64, |place| {
+            let (hash, theta) = lease(asked[place as usize])?;
             Ok::<_, StudyError>(evaluates[hash].evaluate(theta))
         })?;
-        for (index, outcome) in outcomes.into_iter().enumerate() {
+        for (index, outcome) in asked.into_iter().zip(outcomes) {
             let values = match outcome? {
                 Outcome::Evaluated(observables) => search.values(index, &observables),
                 Outcome::Rejected(_) | Outcome::Fault(_) => None,

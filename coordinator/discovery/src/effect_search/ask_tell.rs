@@ -3,6 +3,7 @@
 
 use crate::candidate::{Candidate, CandidateError};
 use crate::effect_search::base;
+use crate::effect_search::change::CandidateChange;
 use crate::effect_search::depth::Depth;
 use crate::effect_search::ranking::EffectRanking;
 use crate::effect_search::state::{EffectSearch, FitPhase, Phase};
@@ -57,16 +58,21 @@ impl EffectSearch {
     }
 
     /// Makes a search that extends a model that is fitted already. Without candidates it is done at once.
+    ///
+    /// # Arguments
+    /// - `changes`: what the candidates changed beyond another base, where they are not screened on the model again.
     pub(crate) fn beyond(
         base: FittedModel,
         likelihood: Likelihood,
-        candidates: &[Candidate],
+        candidates: (&[Candidate], &[Option<CandidateChange>]),
         depth: &'static Depth,
         seed: u64,
     ) -> Self {
+        let (candidates, changes) = candidates;
         let mut search = Self::unasked(base.fit.frame.clone(), likelihood, candidates, seed);
         search.depth = depth;
         search.base = Some(base);
+        search.screen_by_changes(changes);
         search.screen_low_fidelity();
         search
     }

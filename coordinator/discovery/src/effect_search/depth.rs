@@ -58,6 +58,8 @@ pub(crate) struct RefinementDepth {
 /// The fits of the best candidates from several starts.
 #[derive(Debug)]
 pub(crate) struct ConfirmationDepth {
+    /// How many candidates are confirmed at most.
+    pub(crate) max_count: usize,
     /// A candidate whose fitted or screened log Bayes factor lies within this distance of the best is confirmed too, because a fit
     /// that has not converged may be the best \[nats\].
     pub(crate) within: f64,
@@ -138,6 +140,7 @@ pub(crate) const FULL: Depth = Depth {
         plan: &[FitStep::Differences, FitStep::Trials(6)],
     },
     confirmation: Some(ConfirmationDepth {
+        max_count: usize::MAX,
         within: 10.0,
         within_if_pressed: 30.0,
         samples: true,
@@ -163,6 +166,7 @@ pub(crate) const SPARING: Depth = Depth {
         ..FULL.extension
     },
     confirmation: Some(ConfirmationDepth {
+        max_count: 8,
         within: 5.0,
         within_if_pressed: 5.0,
         samples: false,
@@ -197,6 +201,21 @@ pub(crate) const QUICK: Depth = Depth {
     },
     confirmation: None,
     ..FULL
+};
+
+/// A further effect of a rough model beyond one of the best combinations.
+pub(crate) const SPARING_QUICK: Depth = Depth {
+    extension: ExtensionDepth {
+        max_count: 4,
+        reach: None,
+        ..SPARING.extension
+    },
+    refinement: RefinementDepth {
+        max_count: 2,
+        plan: &[FitStep::Rounds { max: 2, trials: 6 }],
+    },
+    confirmation: None,
+    ..SPARING
 };
 
 /// A further effect beyond one of the lower ranks of a wide beam, by a shorter screen.

@@ -8,6 +8,7 @@ use crate::laplace::batch::FitBatch;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::correction::quotient;
 use crate::laplace::fit::LaplaceFit;
+use crate::laplace::noise;
 use crate::laplace::point::FitPoint;
 use crate::laplace::quadratic::quadratic;
 use crate::laplace::reduced_discrepancy::reduced_discrepancy;
@@ -55,6 +56,13 @@ fn fit(
     let mut fit = fit.corrected(&corrections);
     if depth.holds_shapes {
         fit.hold(shapes());
+    }
+    // Where the base leads to parameters that the model rejects, the base with an effect leads there as well: its steps would be
+    // rejected one after the other.
+    if base.is_at_rejection {
+        let noise_sds = noise::coordinates(likelihood);
+        let is_noise_sd = |k: &usize| noise_sds.iter().any(|(sd, _)| sd == k);
+        fit.hold((0..base.columns.len()).filter(|k| !is_noise_sd(k)));
     }
     Some(fit)
 }

@@ -6,6 +6,7 @@ use crate::effect_search::screen;
 use crate::effect_search::screen_result::{self, Evaluated, Screened};
 use crate::effect_search::state::{CandidateState, EffectSearch, EvidenceEstimate, Phase};
 use crate::laplace::batch::PositionRequest;
+use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::correction::Correction;
 
 impl EffectSearch {
@@ -26,7 +27,7 @@ impl EffectSearch {
             }
         }
         if requests.len() == 1 {
-            return self.screen(0, (0..self.candidates.len()).collect());
+            return self.screen(0, self.worth_evaluations());
         }
         self.ask(requests);
         self.phase = Phase::LowFidelityScreen;
@@ -56,18 +57,16 @@ impl EffectSearch {
             }
             let screened = screen_result::screened(&state.frame, base, &self.likelihood, &evaluated);
             // A candidate that does not change the low-fidelity predictions must be screened on the model.
-            state.low_fidelity =
-                screened.filter(|screened| screened.change.iter().any(|change| *change != 0.0));
-            if let Some(screened) = &state.low_fidelity {
-                state.estimate = Some(EvidenceEstimate::of_screen(screened));
-                state.screened = Some(screened.as_of_model());
+            let changes = |screened: &Screened| screened.change.iter().any(|change| *change != 0.0);
+            if let Some(screened) = screened.filter(changes) {
+                state.take_low_fidelity(screened);
             }
         }
         let candidates = self.worth_evaluations();
         self.screen(0, candidates);
     }
 
-    /// Returns candidates that the low-fidelity model could not screen, and those with one strength that it ranks near the best.
+    /// Returns candidates that were not screened without the model, and those with one strength that it ranks near the best.
     /// A candidate with several strengths begins its fit at the base and needs derivatives alone.
     fn worth_evaluations(&self) -> Vec<usize> {
         let promise = |k: &usize| {
@@ -89,17 +88,6 @@ impl EffectSearch {
             self.awaits_model(*k) && (near.contains(k) || is_within_reach)
         };
         all().filter(is_worth).collect()
-    }
-
-    /// Returns the coordinates of the shapes that fit best on the low-fidelity model; `None` if it was not evaluated, has no
-    /// shape, or the model refused these shapes.
-    pub(super) fn best_shape(&self, candidate: usize) -> Option<Vec<f64>> {
-        let state = &self.candidates[candidate];
-        let position = &state.low_fidelity.as_ref()?.point.position;
-        let added = self.base_frame.dimension()..position.len();
-        let shapes = added.filter(|k| !state.frame.is_strength(*k));
-        let shapes: Vec<f64> = shapes.map(|k| position[k]).collect();
-        (!shapes.is_empty()).then_some(shapes)
     }
 
     /// Returns whether a candidate's screen on the low-fidelity model must be repeated on the model.
@@ -138,8 +126,17 @@ impl CandidateState {
 }
 
 impl Screened {
+    /// Returns the coordinates of the shapes that fit best; none where the candidate has no shape.
+    pub(super) fn shape(&self, frame: &NormalFrame, base_dimension: usize) -> Vec<f64> {
+        let added = base_dimension..self.point.position.len();
+        added
+            .filter(|k| !frame.is_strength(*k))
+            .map(|k| self.point.position[k])
+            .collect()
+    }
+
     /// Returns this result with corrections of zero, as if the model changed as the low-fidelity model does.
-    fn as_of_model(&self) -> Self {
+    pub(super) fn as_of_model(&self) -> Self {
         let none = |column: &Vec<f64>| Some(Correction::none(column.len()));
         Self {
             corrections: self.columns.iter().map(none).collect(),
@@ -149,7 +146,7 @@ impl Screened {
 }
 
 impl EvidenceEstimate {
-    fn of_screen(screened: &Screened) -> Self {
+    pub(super) fn of_screen(screened: &Screened) -> Self {
         Self {
             log_bayes_factor: screened.log_bayes_factor,
             stated_log_bayes_factor: screened.log_bayes_factor,

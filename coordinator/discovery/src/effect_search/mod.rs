@@ -23,12 +23,14 @@
 //! - `ask_tell`: how the search is asked and told. `state`: its state, and the phases. `depth`: how many evaluations each phase may
 //!   spend: for the whole library of a smooth or a rough model, and fewer beyond a combination, for curves and for simple forms.
 //! - `base`, `screen`, `low_fidelity_screen`, `extension`, `refinement`, `confirmation`, `sampling`: the phases.
+//! - `change`: the screen of a rough model beyond a combination.
 //! - `numerical_noise`, `screen_result`: the results of one evaluated line or candidate.
 //! - `selection`: the candidates that are kept, confirmed and ranked. `ranking`: the result.
 //! - `projection`: changes of the predictions beyond those of the base. `class`: effects that the data cannot distinguish.
 
 pub(crate) mod ask_tell;
 pub(crate) mod base;
+pub(crate) mod change;
 pub(crate) mod class;
 mod confirmation;
 pub(crate) mod depth;

@@ -2,7 +2,7 @@
 //! model rejects these.
 
 use crate::effect_search::depth::ScreenDepth;
-use crate::effect_search::screen_result::{Evaluated, screened};
+use crate::effect_search::screen_result::{Evaluated, Screened, screened};
 use crate::effect_search::state::{EffectSearch, Phase};
 use crate::laplace::batch::PositionRequest;
 use crate::laplace::coordinate::NormalFrame;
@@ -15,12 +15,13 @@ pub(super) const STEPS: [f64; 4] = [1.0, 0.3, 0.1, 0.03];
 /// each of several strengths; or, for a switch, the base's fit.
 ///
 /// # Arguments
-/// - `shape`: the best coordinates of the shapes, if they are known; no others are evaluated then.
+/// - `screened`: the result of the screen on the low-fidelity model, if there is one. It knows how the change grows with a single
+///   strength, so that one strength is evaluated, and the best shape.
 pub(super) fn positions(
     frame: &NormalFrame,
     base: &[f64],
     depth: &ScreenDepth,
-    shape: Option<Vec<f64>>,
+    screened: Option<&Screened>,
     step_index: usize,
 ) -> Vec<Vec<f64>> {
     if frame.is_switch() {
@@ -41,8 +42,8 @@ pub(super) fn positions(
         };
         return frame.strengths.iter().map(along).collect();
     };
-    let shapes = match shape {
-        Some(best) => vec![best],
+    let shapes = match screened {
+        Some(screened) => vec![screened.shape(frame, base.len())],
         None => depth.of_shapes(frame.dimension() - base.len() - 1),
     };
     let at = |shape: &[f64], strength: f64| {
@@ -52,6 +53,13 @@ pub(super) fn positions(
     };
     let last = STEPS.len() - 1;
     match step_index {
+        index if screened.is_some() => {
+            let strength = depth.strengths.get(index).or(STEPS.get(index));
+            strength
+                .map(|strength| at(&shapes[0], *strength))
+                .into_iter()
+                .collect()
+        }
         0 => {
             let strengths = depth.strengths.iter().map(|&strength| at(&shapes[0], strength));
             let shapes = shapes[1..].iter().map(|shape| at(shape, depth.strengths[0]));
@@ -87,7 +95,13 @@ impl EffectSearch {
         for &k in &candidates {
             let frame = &self.candidates[k].frame;
             let base = &base.fit.point.position;
-            let positions = positions(frame, base, &self.depth.screen, self.best_shape(k), step_index);
+            let positions = positions(
+                frame,
+                base,
+                &self.depth.screen,
+                self.candidates[k].low_fidelity.as_ref(),
+                step_index,
+            );
             requests.extend(PositionRequest::all_for_model(Some(k), positions));
         }
         if requests.is_empty() && step_index + 1 < STEPS.len() {

@@ -116,7 +116,8 @@ impl EffectSearch {
                 .map(|estimate| estimate.log_bayes_factor)
         };
         let fitted = (0..self.candidates.len()).filter(|k| is_fitted(*k));
-        let best = fitted.filter_map(log_bayes_factor).fold(0.0, f64::max);
+        // Where nothing is detected, what may still be detected is within reach.
+        let best = fitted.filter_map(log_bayes_factor).fold(DETECTED, f64::max);
         let Some(share) = self.depth.extension.reach else {
             return Vec::new();
         };
@@ -133,6 +134,11 @@ impl EffectSearch {
         let (Some(&(_, best)), Some(depth)) = (promises.first(), &self.depth.confirmation) else {
             return Vec::new();
         };
+        let confirmed = self.candidates.iter().filter(|state| state.had_confirmation);
+        let room = depth.max_count.saturating_sub(confirmed.count());
+        if room == 0 {
+            return Vec::new();
+        }
         // A candidate that the model refused from all starts, or that has no evidence, would stay unconfirmed for ever.
         let unconfirmed = |k: usize| {
             let state = &self.candidates[k];
@@ -144,7 +150,8 @@ impl EffectSearch {
         let first = |accepts: &dyn Fn(usize, f64) -> bool, min_promise: f64| -> Vec<usize> {
             let above = promises.iter().filter(|(_, promise)| *promise > min_promise);
             let accepted = above.filter(|(k, promise)| accepts(*k, *promise));
-            accepted.map(|(k, _)| *k).take(confirmation::COUNT).collect()
+            let count = confirmation::COUNT.min(room);
+            accepted.map(|(k, _)| *k).take(count).collect()
         };
         let is_pressed = self.is_pressed();
         let within = if is_pressed {

@@ -59,6 +59,8 @@ pub(crate) struct LaplaceFit {
     progress: Progress,
     /// Whether the point has moved since the last differences.
     has_moved: bool,
+    /// Whether the model rejected the last trial position.
+    pub(crate) is_at_rejection: bool,
     /// The low-fidelity derivatives at the point, where they were just computed.
     low_fidelity: Vec<Option<Vec<f64>>>,
     pending: Pending,
@@ -138,6 +140,7 @@ impl LaplaceFit {
             failures: 0,
             progress: Progress::Gained,
             has_moved: false,
+            is_at_rejection: false,
             pending: Pending::Nothing,
         }
     }
@@ -399,6 +402,7 @@ impl LaplaceFit {
             .zip(&self.point.position)
             .map(|(a, b)| a - b)
             .collect();
+        self.is_at_rejection = values.is_none();
         if let Some(values) = &values {
             self.update_jacobian(&step, values);
         }

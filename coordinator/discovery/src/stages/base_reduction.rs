@@ -15,6 +15,7 @@ impl SearchState {
             return Stage::Failed(failure);
         }
         self.take_numerical_noise(&branch.search);
+        self.take_changes(&branch.search);
         self.hypotheses.base = branch.search.base_fit().cloned();
         self.hypotheses.ranking = branch.search.ranking().cloned().unwrap_or_default();
         self.add_combinations(branch);

@@ -1,8 +1,9 @@
 //! Step 8, the beam search: beyond each of the best combinations, one more effect is searched while misfit remains.
 
 use crate::chi_square::FURTHER_EFFECT;
-use crate::effect_search::depth::{GLANCE, QUICK};
+use crate::effect_search::depth::{GLANCE, QUICK, SPARING_QUICK};
 use crate::probability::DETECTED;
+use crate::settings::Smoothness;
 use crate::stages::branch::SearchBranch;
 use crate::stages::hypotheses::{EffectCombination, candidate_set};
 use crate::stages::stage::Stage;
@@ -41,7 +42,11 @@ impl SearchState {
         }
         let branches = best.into_iter().enumerate().filter_map(|(rank, combination)| {
             let effects = &combination.effects;
-            let depth = if rank < BEAM { &QUICK } else { &GLANCE };
+            let depth = match self.task.settings.smoothness {
+                Smoothness::Smooth if rank < BEAM => &QUICK,
+                Smoothness::Smooth => &GLANCE,
+                Smoothness::Rough | Smoothness::Unknown => &SPARING_QUICK,
+            };
             self.branch(effects.clone(), self.further_effects(effects), depth)
         });
         Stage::BeamSearch(size, branches.collect())

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::effect_search::change::CandidateChange;
 use crate::effect_search::depth::Depth;
 use crate::effect_search::state::EffectSearch;
 use crate::laplace::fit::FittedModel;
@@ -20,6 +21,8 @@ pub(super) struct SearchState {
     pub(super) evaluations: usize,
     /// Numerical noise sd of each channel by its index, in its unit; empty where it is negligible.
     pub(super) numerical_noise_sds: Vec<f64>,
+    /// What each candidate of a rough model changes of the base's predictions; empty for other models.
+    changes: Vec<Option<CandidateChange>>,
     /// The models that were fitted without each level.
     refitted: BTreeMap<ModelKey, RefittedModel>,
 }
@@ -31,6 +34,7 @@ impl SearchState {
             task,
             evaluations: 0,
             numerical_noise_sds: Vec::new(),
+            changes: Vec::new(),
             refitted: BTreeMap::new(),
         }
     }
@@ -57,6 +61,13 @@ impl SearchState {
         for (channel, sd) in proposed {
             let scatter = self.numerical_noise_sds.get(*channel).copied().unwrap_or(0.0);
             *sd = (*sd * *sd + scatter * scatter).sqrt();
+        }
+    }
+
+    /// Keeps what the candidates change, where the screen beyond each combination would cost too many evaluations.
+    pub(super) fn take_changes(&mut self, search: &EffectSearch) {
+        if search.smoothness() != Smoothness::Smooth {
+            self.changes = search.changes();
         }
     }
 
@@ -102,8 +113,12 @@ impl SearchState {
         if chosen.is_empty() {
             return None;
         }
+        let change = |k: &usize| self.changes.get(*k).cloned().flatten();
+        let changes: Vec<_> = candidates.iter().map(change).collect();
         let likelihood = self.task.likelihood.clone();
-        let search = EffectSearch::beyond(base, likelihood, &chosen, depth, self.task.settings.seed);
+        let candidates_with_changes = (chosen.as_slice(), changes.as_slice());
+        let seed = self.task.settings.seed;
+        let search = EffectSearch::beyond(base, likelihood, candidates_with_changes, depth, seed);
         Some(SearchBranch::new(beyond, candidates, search))
     }
 

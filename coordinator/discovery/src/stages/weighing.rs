@@ -5,14 +5,17 @@ use std::collections::BTreeMap;
 use crate::effect_search::ranking::{EffectRanking, EvidenceMethod};
 use crate::laplace::evidence::log_sum_exp;
 use crate::probability::{DETECTED, ModelProbability, OutsideEvidence, PRIOR_OF_NONE, counted_evidence};
+use crate::settings::Smoothness;
 use crate::stages::hypotheses::{EffectCombination, Hypotheses};
 use crate::stages::next_run::OpenHypothesis;
 use crate::task::SearchTask;
 
 /// Further runs do not compare explanations that are less probable.
 const OPEN: f64 = 0.005;
-/// Maximum number of explanations that further runs compare.
+/// Maximum number of explanations that further runs compare, and that number for a rough model: an evaluation on all runs that
+/// could be made costs several of the fitted runs.
 const MAX_OPEN: usize = 12;
+const MAX_OPEN_OF_ROUGH: usize = 4;
 /// Less probable sets are not compared by prediction.
 const LEADING: f64 = 0.01;
 /// Maximum number of sets that predict left-out levels.
@@ -440,7 +443,10 @@ impl Weighing {
         let mut open: Vec<OpenHypothesis> = open.collect();
         open.extend(self.open_laws(hypotheses));
         open.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-        open.truncate(MAX_OPEN);
+        open.truncate(match base.frame.smoothness {
+            Smoothness::Smooth => MAX_OPEN,
+            Smoothness::Rough | Smoothness::Unknown => MAX_OPEN_OF_ROUGH,
+        });
         open
     }
 }
