@@ -10,6 +10,7 @@ mod inferred_sd_reduction;
 mod pairs;
 mod replacement;
 mod rough_model;
+mod rough_pairs;
 mod search;
 mod setup;
 mod shared_errors;
