@@ -1,7 +1,7 @@
 //! Evaluations and errors of emulated sampling on jobs.
 //!
-//! `cargo bench -p benchmark --bench emulated -- SEEDS JOB...` samples the job of each file with seeds 1 to SEEDS, each on one thread, and
-//! prints a line: the seeds whose emulator was given up; of the other seeds mean and largest number of evaluations before the final
+//! `cargo bench -p benchmark --bench emulated -- SEEDS JOB...` samples the job of each file with seeds 1 to SEEDS, or FIRST-LAST, each on one
+//! thread, and prints a line: the seeds whose emulator was given up; of the other seeds mean and largest number of evaluations before the final
 //! draws and of all; mean and sd of ln Z over the seeds, and the mean standard error that was reported; the mean effective number of the final
 //! draws; and the seconds that the model and the sampler itself took. `cargo bench -p inference --bench sampler_table -- emulated` does the
 //! same for problems with known evidence.
@@ -95,12 +95,14 @@ fn sample(spec: &Spec, model: &Evaluate, seed: u64) -> Sampled {
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
-    let seeds: u64 = arguments[0].parse().unwrap();
+    let (first, last) = arguments[0].split_once('-').unwrap_or(("1", &arguments[0]));
+    let first: u64 = first.parse().unwrap();
+    let seeds = last.parse::<u64>().unwrap() + 1 - first;
     for path in &arguments[1..] {
         let spec = read(Path::new(path));
         let model = Evaluate::new(&spec.sampled_variant()).unwrap();
         let sampled: Vec<Sampled> =
-            each(seeds, |seed| Ok::<_, StudyError>(sample(&spec, &model, seed + 1))).unwrap();
+            each(seeds, |seed| Ok::<_, StudyError>(sample(&spec, &model, first + seed))).unwrap();
         let posteriors: Vec<&SampledPosterior> =
             sampled.iter().filter_map(|s| s.posterior.as_ref()).collect();
         let values = |value: fn(&SampledPosterior) -> f64| -> Vec<f64> {
