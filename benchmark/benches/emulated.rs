@@ -101,8 +101,10 @@ fn main() {
     for path in &arguments[1..] {
         let spec = read(Path::new(path));
         let model = Evaluate::new(&spec.sampled_variant()).unwrap();
-        let sampled: Vec<Sampled> =
-            each(seeds, |seed| Ok::<_, StudyError>(sample(&spec, &model, first + seed))).unwrap();
+        let sampled: Vec<Sampled> = each(seeds, |seed| {
+            Ok::<_, StudyError>(sample(&spec, &model, first + seed))
+        })
+        .unwrap();
         let posteriors: Vec<&SampledPosterior> =
             sampled.iter().filter_map(|s| s.posterior.as_ref()).collect();
         let values = |value: fn(&SampledPosterior) -> f64| -> Vec<f64> {

@@ -1,8 +1,8 @@
 //! What candidates change of the predictions, as their screen beyond the base has found it.
 //!
-//! A rough model without a low-fidelity model is too expensive for a screen beyond each combination. A candidate changes the predictions
-//! of a combination nearly as it changed those of the base, so this takes the place of the low-fidelity screen: it selects the candidates
-//! that are worth evaluations.
+//! A rough model is too expensive for a screen beyond each combination. A candidate changes the predictions of a combination nearly as it
+//! changed those of the base, so this takes the place of the low-fidelity screen where there is none, or where it shows nothing: it selects
+//! the candidates that are worth evaluations.
 
 use crate::effect_search::screen_result::{Screened, screened};
 use crate::effect_search::state::{CandidateState, EffectSearch, EvidenceEstimate};
@@ -56,14 +56,13 @@ impl EffectSearch {
         states.map(|state| CandidateChange::new(state, base)).collect()
     }
 
-    /// Screens candidates without a low-fidelity model by the changes that they made beyond another base.
+    /// Screens candidates by the changes that they made beyond another base. Where a low-fidelity model shows a change, that counts
+    /// instead.
     pub(super) fn screen_by_changes(&mut self, changes: &[Option<CandidateChange>]) {
         let Some(base) = &self.base else { return };
         let (position, values) = (&base.fit.point.position, &base.fit.point.values);
         for (state, change) in self.candidates.iter_mut().zip(changes) {
-            let Some(change) = change.as_ref().filter(|_| !state.frame.has_low_fidelity) else {
-                continue;
-            };
+            let Some(change) = change else { continue };
             let evaluated = change.steps.iter().map(|(own, by)| {
                 let values = values.iter().zip(by).map(|(value, by)| value + by);
                 ([position.as_slice(), own].concat(), Some(values.collect()))
