@@ -5,10 +5,23 @@ use std::collections::BTreeMap;
 /// An answer: the values of a query; `None` where the model rejected the parameters.
 pub(super) type Answer = Option<Vec<f64>>;
 
-/// A model by the hash of its variant, and its parameters by their bits.
-type EvaluationKey = (String, Vec<u64>);
+/// An evaluation: a model by the hash of its variant, and its parameters by their bits.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct EvaluationKey {
+    hash: String,
+    theta: Vec<u64>,
+}
 
-/// The answers of a search by model and parameters.
+impl EvaluationKey {
+    pub(super) fn new(hash: &str, theta: &[f64]) -> Self {
+        Self {
+            hash: hash.to_owned(),
+            theta: theta.iter().map(|value| value.to_bits()).collect(),
+        }
+    }
+}
+
+/// The answers of a search by evaluation.
 ///
 /// Fits of one model from several starts meet at the same points, and a step of an inferred noise sd changes no prediction.
 #[derive(Debug, Default)]
@@ -17,20 +30,13 @@ pub(super) struct Answers {
 }
 
 impl Answers {
-    /// Returns the answer of a model at these parameters, if it was asked there.
-    pub(super) fn find(&self, (hash, theta): &(String, Vec<f64>)) -> Option<&Answer> {
-        self.known.get(&key(hash, theta))
+    /// Returns the answer of an evaluation, if it was asked for.
+    pub(super) fn find(&self, evaluation: &EvaluationKey) -> Option<&Answer> {
+        self.known.get(evaluation)
     }
 
     /// Keeps an answer.
-    pub(super) fn insert(&mut self, (hash, theta): &(String, Vec<f64>), values: Option<&[f64]>) {
-        self.known.insert(key(hash, theta), values.map(<[f64]>::to_vec));
+    pub(super) fn insert(&mut self, evaluation: EvaluationKey, values: Option<&[f64]>) {
+        self.known.insert(evaluation, values.map(<[f64]>::to_vec));
     }
-}
-
-fn key(hash: &str, theta: &[f64]) -> EvaluationKey {
-    (
-        hash.to_owned(),
-        theta.iter().map(|value| value.to_bits()).collect(),
-    )
 }

@@ -30,7 +30,11 @@ use super::rig_errors::rig_errors;
 const MIN_CREDIBLE: f64 = 0.05;
 
 /// Makes the record of a conclusion.
-pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -> Discovery {
+pub(super) fn discovery_record(
+    models: &SearchModels,
+    conclusion: &Conclusion,
+    evaluations: usize,
+) -> Discovery {
     let names = |indices: &[usize]| -> Vec<String> { indices.iter().map(|&k| models.name(k)).collect() };
     let effects = effects(models, conclusion);
     let (outside, law) = match &conclusion.outside {
@@ -126,8 +130,9 @@ pub(super) fn discovery_record(models: &SearchModels, conclusion: &Conclusion) -
         numerical_noise: numerical_noise(&conclusion.numerical_noise_sds),
         chi2: chi_square(conclusion.chi_square, models),
         chi2_best: chi_square(conclusion.chi_square_best, models),
-        evaluations_to_name: conclusion.ranking.evaluations.to_name() as u64,
-        evaluations: conclusion.evaluations as u64,
+        // This counts queries, of which some may have asked for the same evaluation.
+        evaluations_to_name: conclusion.ranking.evaluations.to_name().min(evaluations) as u64,
+        evaluations: evaluations as u64,
     };
     record.text = sentence(models, conclusion, &record);
     record

@@ -1,5 +1,7 @@
 //! A search in progress: its queries as leases take them, and their answers.
 
+use std::collections::BTreeMap;
+
 use discovery::{DiscoverySearch, Smoothness};
 use inference::{Proposal, TellProgress};
 use shared::api::{SearchLeader, SearchProgress};
@@ -7,7 +9,7 @@ use shared::file::FileError;
 use shared::model::ModelVariant;
 use shared::outcome::Observables;
 
-use super::answers::{Answer, Answers};
+use super::answers::{Answer, Answers, EvaluationKey};
 use super::discovery_record::discovery_record;
 use super::models::SearchModels;
 use record::Discovery;
@@ -21,8 +23,12 @@ pub struct RunningDiscovery {
     leases: Vec<(String, Vec<f64>)>,
     /// The queries of the round that wait for the model.
     pending: Vec<Proposal>,
-    /// `None` where an evaluation costs less than its answer's memory.
+    /// The queries of the round that ask for the same evaluation as a pending one.
+    twins: BTreeMap<usize, Vec<usize>>,
+    /// The answers of the model itself; `None` where an evaluation costs less than the memory of its answer.
     answers: Option<Answers>,
+    /// Number of queries to the model itself that were answered without an evaluation of their own.
+    spared: usize,
 }
 
 /// The error with which a search cannot begin or continue.
@@ -52,7 +58,9 @@ impl RunningDiscovery {
             models,
             leases: Vec::new(),
             pending: Vec::new(),
+            twins: BTreeMap::new(),
             answers: (!is_cheap).then(Answers::default),
+            spared: 0,
         };
         running.begin_round()?;
         Ok(running)
@@ -62,8 +70,8 @@ impl RunningDiscovery {
     fn begin_round(&mut self) -> Result<TellProgress, DiscoveryError> {
         loop {
             self.prepare()?;
-            let (known, unknown) = self.known_and_unknown();
-            self.pending = unknown;
+            let known = self.sort_queries();
+            self.spared += known.len();
             let mut progress = TellProgress::Waiting;
             for (index, values) in &known {
                 progress = self.search.tell(*index, values.as_deref())?;
@@ -71,25 +79,46 @@ impl RunningDiscovery {
             match progress {
                 TellProgress::Waiting => return Ok(TellProgress::NextRound),
                 TellProgress::NextRound => {}
-                over => return Ok(over),
+                over => return Ok(self.ended(over)),
             }
         }
     }
 
-    /// Returns the queries of the round whose answers are known, and of the others the first of each evaluation.
-    fn known_and_unknown(&self) -> (Vec<(usize, Answer)>, Vec<Proposal>) {
-        let Some(answers) = &self.answers else {
-            return (Vec::new(), self.search.pending().to_vec());
-        };
-        let (mut known, mut unknown) = (Vec::new(), Vec::new());
-        for (proposal, lease) in self.search.pending().iter().zip(&self.leases) {
-            match answers.find(lease) {
-                Some(values) => known.push((proposal.particle, values.clone())),
-                None if self.leases[..proposal.particle].contains(lease) => {}
-                None => unknown.push(proposal.clone()),
+    /// Leaves no query pending.
+    fn ended(&mut self, progress: TellProgress) -> TellProgress {
+        self.pending.clear();
+        self.leases.clear();
+        progress
+    }
+
+    /// Returns the evaluation of a query, if its answer is remembered.
+    fn remembered(&self, particle: usize) -> Option<EvaluationKey> {
+        let (hash, theta) = self.leases.get(particle)?;
+        let query = self.search.query(particle)?;
+        (self.answers.is_some() && !query.is_low_fidelity).then(|| EvaluationKey::new(hash, theta))
+    }
+
+    /// Sorts the queries of the round: those whose answers are known, with these; of the others the first of each evaluation, which are
+    /// pending, and its twins.
+    fn sort_queries(&mut self) -> Vec<(usize, Answer)> {
+        let mut known = Vec::new();
+        let mut first: BTreeMap<EvaluationKey, usize> = BTreeMap::new();
+        self.pending.clear();
+        self.twins.clear();
+        for proposal in self.search.pending() {
+            let particle = proposal.particle;
+            let evaluation = self.remembered(particle);
+            let answer = self.answers.as_ref().zip(evaluation.as_ref());
+            if let Some(values) = answer.and_then(|(answers, evaluation)| answers.find(evaluation)) {
+                known.push((particle, values.clone()));
+                continue;
+            }
+            match evaluation.map(|evaluation| *first.entry(evaluation).or_insert(particle)) {
+                Some(first) if first != particle => self.twins.entry(first).or_default().push(particle),
+                _ => self.pending.push(proposal.clone()),
             }
         }
-        (known, unknown)
+        known
     }
 
     /// Makes the variants of the round, and its leases.
@@ -148,24 +177,52 @@ impl RunningDiscovery {
     /// # Errors
     /// [`DiscoveryError`].
     pub fn tell(&mut self, particle: usize, values: Option<&[f64]>) -> Result<TellProgress, DiscoveryError> {
-        let mut progress = self.search.tell(particle, values)?;
-        if let (Some(answers), Some(lease)) = (&mut self.answers, self.leases.get(particle)) {
-            answers.insert(lease, values);
-            let queries = self.leases.iter().enumerate();
-            for (twin, _) in queries.filter(|(index, other)| *index != particle && *other == lease) {
-                progress = self.search.tell(twin, values)?;
-            }
+        let evaluation = self.remembered(particle);
+        let progress = self.tell_twins(particle, values)?;
+        if let (Some(answers), Some(evaluation)) = (&mut self.answers, evaluation) {
+            answers.insert(evaluation, values);
         }
-        if progress == TellProgress::NextRound {
-            return self.begin_round();
+        self.proceed(progress)
+    }
+
+    /// Takes the place of an answer that no machine could give. It counts as a rejection in this round, and is asked for again in a
+    /// later one.
+    ///
+    /// # Errors
+    /// [`DiscoveryError`].
+    pub fn give_up(&mut self, particle: usize) -> Result<TellProgress, DiscoveryError> {
+        let progress = self.tell_twins(particle, None)?;
+        self.proceed(progress)
+    }
+
+    /// Answers a query, and the others of the round that ask for the same evaluation.
+    fn tell_twins(
+        &mut self,
+        particle: usize,
+        values: Option<&[f64]>,
+    ) -> Result<TellProgress, DiscoveryError> {
+        let mut progress = self.search.tell(particle, values)?;
+        for twin in self.twins.remove(&particle).unwrap_or_default() {
+            self.spared += 1;
+            progress = self.search.tell(twin, values)?;
         }
         Ok(progress)
+    }
+
+    /// Begins the next round where one is complete.
+    fn proceed(&mut self, progress: TellProgress) -> Result<TellProgress, DiscoveryError> {
+        match progress {
+            TellProgress::NextRound => self.begin_round(),
+            TellProgress::Finished | TellProgress::Failed(_) => Ok(self.ended(progress)),
+            TellProgress::Waiting | TellProgress::StageFinished => Ok(progress),
+        }
     }
 
     /// Returns the result; `None` while the search is running.
     pub fn record(&self) -> Option<Discovery> {
         let conclusion = self.search.conclusion()?;
-        Some(discovery_record(&self.models, conclusion))
+        let evaluations = conclusion.evaluations - self.spared;
+        Some(discovery_record(&self.models, conclusion, evaluations))
     }
 }
 
@@ -191,9 +248,15 @@ mod tests {
                 let (hash, theta) = search.lease(proposal.particle).unwrap();
                 let sum: f64 = theta.iter().sum();
                 let predicted: Vec<f64> = (0..values).map(|i| libm::sin(sum + i as f64)).collect();
-                let bits: Vec<u64> = theta.iter().map(|value| value.to_bits()).collect();
-                evaluations.insert((hash.to_owned(), bits));
-                asked += 1;
+                let evaluation = EvaluationKey::new(hash, theta);
+                let is_of_model = search
+                    .search
+                    .query(proposal.particle)
+                    .is_some_and(|q| !q.is_low_fidelity);
+                if is_of_model {
+                    evaluations.insert(evaluation);
+                    asked += 1;
+                }
                 search.tell(proposal.particle, Some(&predicted)).unwrap();
             }
         }

@@ -60,7 +60,7 @@ impl EffectSearch {
     /// Makes a search that extends a model that is fitted already. Without candidates it is done at once.
     ///
     /// # Arguments
-    /// - `changes`: what the candidates changed beyond another base, where they are not screened on the model again.
+    /// - `changes`: what the candidates changed beyond another base, which selects those that are screened on the model.
     pub(crate) fn beyond(
         base: FittedModel,
         likelihood: Likelihood,

@@ -14,6 +14,8 @@ pub(crate) struct CandidateChange {
     steps: Vec<(Vec<f64>, Vec<f64>)>,
     /// Derivatives of the predicted values along the candidate's coordinates.
     columns: Vec<Vec<f64>>,
+    /// Log of the mean Bayes factor over the shapes less that at the best shape.
+    shape_gain: f64,
 }
 
 impl CandidateChange {
@@ -28,10 +30,17 @@ impl CandidateChange {
             position[k] = coordinate;
             position[base_dimension..].to_vec()
         };
+        let mut columns = screened.columns[base_dimension..].to_vec();
         let steps = match frame.strength() {
             Some((k, neutral)) => {
                 let step = screened.longest_step;
                 let change = screened.change.iter().map(|change| change * step);
+                // The derivatives along shapes are those at the best strength.
+                let share = step / (screened.point.position[k] - neutral);
+                columns
+                    .iter_mut()
+                    .flatten()
+                    .for_each(|derivative| *derivative *= share);
                 vec![(own(k, neutral + step), change.collect())]
             }
             None => {
@@ -43,7 +52,8 @@ impl CandidateChange {
         };
         Some(Self {
             steps,
-            columns: screened.columns[base_dimension..].to_vec(),
+            columns,
+            shape_gain: screened.log_bayes_factor - screened.best_shape_log_bayes_factor,
         })
     }
 }
@@ -53,7 +63,11 @@ impl EffectSearch {
     pub(crate) fn changes(&self) -> Vec<Option<CandidateChange>> {
         let base = self.base_frame.dimension();
         let states = self.candidates.iter();
-        states.map(|state| CandidateChange::new(state, base)).collect()
+        let change = |state: &CandidateState| {
+            let is_valid = !state.is_refused();
+            is_valid.then(|| CandidateChange::new(state, base)).flatten()
+        };
+        states.map(change).collect()
     }
 
     /// Screens candidates by the changes that they made beyond another base. Where a low-fidelity model shows a change, that counts
@@ -76,6 +90,7 @@ impl EffectSearch {
                     screened.columns[k].clone_from(column);
                 }
             }
+            screened.log_bayes_factor += change.shape_gain;
             state.take_low_fidelity(screened);
         }
     }

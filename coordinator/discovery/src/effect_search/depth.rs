@@ -39,7 +39,7 @@ pub(crate) struct ScreenDepth {
 pub(crate) struct ExtensionDepth {
     /// How many candidates, the best of the screen, are fitted in any case.
     pub(crate) max_count: usize,
-    /// A further candidate is fitted if its screened log Bayes factor exceeds this share of the best fitted one: the screen is
+    /// A further candidate is fitted if its screened log Bayes factor exceeds this share of the best fitted one, or of a detection: the screen is
     /// linear and may find too little, but rarely a quarter of the right value. `None`: no further candidates.
     pub(crate) reach: Option<f64>,
     pub(crate) plan: &'static [FitStep],
@@ -58,7 +58,7 @@ pub(crate) struct RefinementDepth {
 /// The fits of the best candidates from several starts.
 #[derive(Debug)]
 pub(crate) struct ConfirmationDepth {
-    /// How many candidates are confirmed at most.
+    /// How many candidates are confirmed at most, unless the best fit contradicts the data.
     pub(crate) max_count: usize,
     /// A candidate whose fitted or screened log Bayes factor lies within this distance of the best is confirmed too, because a fit
     /// that has not converged may be the best \[nats\].

@@ -57,9 +57,9 @@ fn fit(
     if depth.holds_shapes {
         fit.hold(shapes());
     }
-    // Where the base leads to parameters that the model rejects, the base with an effect leads there as well: its steps would be
-    // rejected one after the other.
-    if base.is_at_rejection {
+    // Where the model rejected the last step of the base, the base with an effect leads there as well: its steps would be rejected one
+    // after the other.
+    if base.is_at_rejection && frame.smoothness != Smoothness::Smooth {
         let noise_sds = noise::coordinates(likelihood);
         let is_noise_sd = |k: &usize| noise_sds.iter().any(|(sd, _)| sd == k);
         fit.hold((0..base.columns.len()).filter(|k| !is_noise_sd(k)));

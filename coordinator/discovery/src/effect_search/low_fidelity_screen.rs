@@ -8,6 +8,7 @@ use crate::effect_search::state::{CandidateState, EffectSearch, EvidenceEstimate
 use crate::laplace::batch::PositionRequest;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::correction::Correction;
+use crate::probability::DETECTED;
 
 impl EffectSearch {
     /// Screens the candidates that the low-fidelity model has on that model, and the others on the model.
@@ -76,7 +77,7 @@ impl EffectSearch {
                 .map(|screened| screened.log_bayes_factor)
         };
         let all = || 0..self.candidates.len();
-        let best = all().filter_map(|k| promise(&k)).fold(0.0, f64::max);
+        let best = all().filter_map(|k| promise(&k)).fold(DETECTED, f64::max);
         let near = self.best(self.depth.extension.max_count);
         let is_worth = |k: &usize| {
             let Some(factor) = promise(k) else { return true };
@@ -104,10 +105,6 @@ impl CandidateState {
     pub(super) fn take_screened(&mut self, screened: Option<Screened>, base_dimension: usize) {
         self.is_screened_on_model = true;
         self.screened = screened;
-        if self.screened.is_none() {
-            // The screen may still find another shape.
-            self.low_fidelity = None;
-        }
         if let (Some(screened), Some(low_fidelity)) = (&mut self.screened, &self.low_fidelity) {
             for k in base_dimension..self.frame.dimension() {
                 screened.corrections[k] = Some(Correction::none(screened.change.len()));

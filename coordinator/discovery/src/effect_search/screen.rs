@@ -8,15 +8,16 @@ use crate::laplace::batch::PositionRequest;
 use crate::laplace::coordinate::NormalFrame;
 
 /// Steps of each of several strengths; the next one is tried if the model rejects the last. A single strength has the steps of the
-/// [`ScreenDepth`], and then the last of these.
+/// [`ScreenDepth`], and then the last of these; where it was screened without the model, the best and the longest of that screen, and then
+/// all but the first of these.
 pub(super) const STEPS: [f64; 4] = [1.0, 0.3, 0.1, 0.03];
 
 /// Returns the positions to evaluate: every strength at the first shape and the first strength at the other shapes; a step along
 /// each of several strengths; or, for a switch, the base's fit.
 ///
 /// # Arguments
-/// - `screened`: the result of the screen on the low-fidelity model, if there is one. It knows how the change grows with a single
-///   strength, so that one strength is evaluated, and the best shape.
+/// - `screened`: the result of a screen without the model, if there is one. It knows the best shape, and the best of the strengths, so that
+///   that one and the longest are evaluated; if the model rejects these, shorter ones.
 pub(super) fn positions(
     frame: &NormalFrame,
     base: &[f64],
@@ -42,24 +43,27 @@ pub(super) fn positions(
         };
         return frame.strengths.iter().map(along).collect();
     };
-    let shapes = match screened {
-        Some(screened) => vec![screened.shape(frame, base.len())],
-        None => depth.of_shapes(frame.dimension() - base.len() - 1),
-    };
+    let shapes = depth.of_shapes(frame.dimension() - base.len() - 1);
     let at = |shape: &[f64], strength: f64| {
         let mut position = [base, shape].concat();
         position.insert(k, neutral + strength);
         position
     };
     let last = STEPS.len() - 1;
+    if let Some(screened) = screened {
+        let shape = screened.shape(frame, base.len());
+        let best = screened.point.position[k] - neutral;
+        let mut strengths = match step_index {
+            0 => vec![screened.longest_step, best],
+            index => vec![STEPS[index]],
+        };
+        strengths.dedup();
+        return strengths
+            .into_iter()
+            .map(|strength| at(&shape, strength))
+            .collect();
+    }
     match step_index {
-        index if screened.is_some() => {
-            let strength = depth.strengths.get(index).or(STEPS.get(index));
-            strength
-                .map(|strength| at(&shapes[0], *strength))
-                .into_iter()
-                .collect()
-        }
         0 => {
             let strengths = depth.strengths.iter().map(|&strength| at(&shapes[0], strength));
             let shapes = shapes[1..].iter().map(|shape| at(shape, depth.strengths[0]));
@@ -133,6 +137,12 @@ impl EffectSearch {
             state.take_screened(screened, base.fit.point.position.len());
             if state.screened.is_none() {
                 refused.push(k);
+            }
+        }
+        // The model may accept the shortest step at the usual shape.
+        if step_index + 2 == STEPS.len() {
+            for &k in &refused {
+                self.candidates[k].low_fidelity = None;
             }
         }
         if step_index + 1 < STEPS.len() && !refused.is_empty() {

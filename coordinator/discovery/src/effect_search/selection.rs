@@ -135,10 +135,11 @@ impl EffectSearch {
             return Vec::new();
         };
         let confirmed = self.candidates.iter().filter(|state| state.had_confirmation);
-        let room = depth.max_count.saturating_sub(confirmed.count());
-        if room == 0 {
-            return Vec::new();
-        }
+        // The rank of fits that contradict the data says little.
+        let room = match self.is_wrong() {
+            true => usize::MAX,
+            false => depth.max_count.saturating_sub(confirmed.count()),
+        };
         // A candidate that the model refused from all starts, or that has no evidence, would stay unconfirmed for ever.
         let unconfirmed = |k: usize| {
             let state = &self.candidates[k];
@@ -166,7 +167,8 @@ impl EffectSearch {
         }
         if is_pressed {
             let leaders = self.leaders_of_screen().into_iter();
-            let open: Vec<usize> = leaders.filter(|k| unconfirmed(*k).is_some()).collect();
+            let open = leaders.filter(|k| unconfirmed(*k).is_some());
+            let open: Vec<usize> = open.take(room).collect();
             if !open.is_empty() {
                 return open;
             }
@@ -180,7 +182,7 @@ impl EffectSearch {
         if !stuck.is_empty() || self.numerical_noise_sds.is_empty() {
             return stuck;
         }
-        self.same_class()
+        self.same_class(room)
     }
 
     /// Whether a parameter of the base lies at a bound of its prior. The base's fit is then a poor start: an effect that takes the
@@ -212,7 +214,7 @@ impl EffectSearch {
 
     /// Members of the best candidate's class that fall short of it, once for each of the first few best candidates. Effects that
     /// change the predictions alike fit alike, unless a fit got stuck.
-    fn same_class(&mut self) -> Vec<usize> {
+    fn same_class(&mut self, mut room: usize) -> Vec<usize> {
         let promises = self.promises();
         let Some(&(best, nats)) = promises.first() else {
             return Vec::new();
@@ -225,7 +227,17 @@ impl EffectSearch {
         let expected = nats - log_bayes_factor_deficit(nats);
         let short = promises.into_iter().filter(|(_, promise)| *promise < expected);
         let short = short.filter(|(k, _)| self.fit_of(*k).is_some() && self.in_place_of_best(*k).is_some());
-        short.map(|(k, _)| k).take(confirmation::COUNT).collect()
+        let has_room = |k: &usize| {
+            let counts = !self.candidates[*k].had_confirmation;
+            let has_room = !counts || room > 0;
+            room -= usize::from(counts && has_room);
+            has_room
+        };
+        short
+            .map(|(k, _)| k)
+            .filter(has_room)
+            .take(confirmation::COUNT)
+            .collect()
     }
 
     /// Returns a start for a member of the best candidate's class that predicts as the best fit does: the strength gives an equal
@@ -465,12 +477,12 @@ mod tests {
             .as_ref()
             .unwrap()
             .log_bayes_factor;
-        assert_eq!(search.same_class(), []);
+        assert_eq!(search.same_class(usize::MAX), []);
         search.compared_best.clear();
         let rival = &mut search.candidates[1 - best];
         rival.screened.as_mut().unwrap().log_bayes_factor = factor / 2.0;
         rival.estimate.as_mut().unwrap().log_bayes_factor = factor / 2.0;
-        assert_eq!(search.same_class(), [1 - best]);
-        assert_eq!(search.same_class(), []);
+        assert_eq!(search.same_class(usize::MAX), [1 - best]);
+        assert_eq!(search.same_class(usize::MAX), []);
     }
 }

@@ -51,7 +51,7 @@ pub(super) struct CandidateState {
     pub(super) limit_of: Option<usize>,
     /// The result of the screen, on the model if that was evaluated.
     pub(super) screened: Option<Screened>,
-    /// The result of the low-fidelity screen.
+    /// The result of a screen without the model: on the low-fidelity model, or by the change beyond another base.
     pub(super) low_fidelity: Option<Screened>,
     pub(super) is_screened_on_model: bool,
     pub(super) estimate: Option<EvidenceEstimate>,

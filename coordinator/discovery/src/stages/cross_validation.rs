@@ -5,11 +5,15 @@ use std::collections::BTreeMap;
 use crate::laplace::correction::Correction;
 use crate::laplace::fit::{FitStep, LaplaceFit};
 use crate::laplace::point::FitPoint;
+use crate::settings::Smoothness;
 use crate::stages::query::{QueriedModel, Query};
 use statistics::likelihood::Likelihood;
 
 /// Refits begin at the fit to all data, so a few steps suffice.
 const PLAN: [FitStep; 2] = [FitStep::Differences, FitStep::Trials(6)];
+/// Those of a rough model, with the derivatives of the fit to all data: a left-out level moves the parameters little, and each of many models
+/// is fitted again without each level.
+const PLAN_OF_ROUGH: [FitStep; 1] = [FitStep::Trials(2)];
 
 /// A model to compare: its effects, the number of parameters of the last one, and its fit to all data.
 pub(super) type ComparedModel<'a> = (Vec<usize>, usize, &'a LaplaceFit);
@@ -76,7 +80,11 @@ impl RefittedModel {
                 ..*correction
             };
             let corrections: Vec<_> = corrections.map(|slot| slot.as_ref().map(part_of)).collect();
-            let refit = LaplaceFit::new(fit.frame.clone(), point, columns, &PLAN);
+            let plan: &[FitStep] = match fit.frame.smoothness {
+                Smoothness::Smooth => &PLAN,
+                Smoothness::Rough | Smoothness::Unknown => &PLAN_OF_ROUGH,
+            };
+            let refit = LaplaceFit::new(fit.frame.clone(), point, columns, plan);
             let mut refit = refit.corrected(&corrections);
             // Shapes are held: a threshold that moves with every left-out level does not generalise.
             let first = fit.frame.dimension() - last_parameters;

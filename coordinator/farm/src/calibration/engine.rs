@@ -11,6 +11,7 @@ use shared::api::{Position, SearchProgress};
 use statistics::{LogLikelihood, NotANumber};
 
 use super::outline::EngineOutline;
+use super::witness::NOBODY;
 use job::{AlgorithmSettings, AlgorithmSettingsError, Spec};
 use record::{Discovery, EvaluationRow};
 use search::{DiscoveryError, RunningDiscovery, SearchModels};
@@ -154,6 +155,7 @@ impl CalibrationEngine {
             CalibrationEngine::Emulated(sampler) => sampler.tell(particle, values)?,
             CalibrationEngine::Fit(fit) => fit.tell(particle, values)?,
             CalibrationEngine::Evolution(evolution) => evolution.tell(particle, log_likelihood(row)?)?,
+            CalibrationEngine::Discovery(discovery) if row.worker == NOBODY => discovery.give_up(particle)?,
             CalibrationEngine::Discovery(discovery) => discovery.tell(particle, values)?,
             CalibrationEngine::Stepping(_) => return Err(EngineError::Stepping),
         })
