@@ -271,3 +271,122 @@ fn a_service_imports_and_guesses_and_its_examples_hold() {
         );
     }
 }
+
+/// The first time of the recordings `[s]`: that of the bags, which `coordinator/import/tests/make_bags.py` wrote.
+const BEGIN_S: f64 = 1_637_060_000.0;
+
+/// Returns the kinematics of a run of 3 s without titles, in steps of 2 to 15 ms: position, speed, angle, depth, two times. The wheel stands for
+/// 0.5 s, then sinks by 4 mm/s from `depth_mm`.
+fn kinematics(depth_mm: f64) -> String {
+    let mut text = String::new();
+    let mut t_ms = 0;
+    for step_ms in [15, 2, 14, 9, 13, 5].iter().cycle() {
+        let t_s = f64::from(t_ms) / 1000.0;
+        let (moved_s, speed) = if t_s < 0.5 { (0.0, 0) } else { (t_s - 0.5, 10) };
+        let (x, z) = (10.0 * moved_s, depth_mm + 4.0 * moved_s);
+        text += &format!("{x:.4}\t{speed}\t15\t{z:.4}\t{t_ms}\t{:.6}\n", BEGIN_S + t_s);
+        t_ms += step_ms;
+        if t_ms > 3000 {
+            break;
+        }
+    }
+    text
+}
+
+/// Returns the map of raw recordings in the document, and the files that it needs.
+fn recordings() -> (String, Vec<(String, Vec<u8>)>) {
+    let document = text(&root().join("docs/import.md"));
+    let (_, map) = document
+        .split_once("<!-- a test runs this map -->\n```toml\n")
+        .expect("the map of the document");
+    let (map, _) = map.split_once("```\n").expect("its end");
+    let bag = |name: &str| {
+        let path = root().join("coordinator/import/tests/files").join(name);
+        std::fs::read(path).expect("a bag")
+    };
+    let mut files = vec![("grouser_zero.bag".to_owned(), bag("zero.bag"))];
+    for (name, depth_mm) in [("grouser_s20_v10_1", -32.5), ("grouser_s-5.5_v25_1", 57.0)] {
+        files.push((format!("{name}.txt"), kinematics(depth_mm).into_bytes()));
+        files.push((format!("{name}.bag"), bag("run.bag")));
+    }
+    (map.to_owned(), files)
+}
+
+/// Compares the runs of the recordings with what they were made from.
+#[track_caller]
+fn assert_recorded(runs: &str) {
+    let mut lines = runs.lines();
+    let titles = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,sinkage_m";
+    assert_eq!(lines.next(), Some(titles));
+    let mut names = Vec::new();
+    for line in lines {
+        let cells: Vec<&str> = line.split(',').collect();
+        names.push(cells[..4].join(","));
+        let near = |at: usize, expected: f64, tolerance: f64| {
+            let value: f64 = cells[at].parse().expect("a number");
+            assert!(
+                (value - expected).abs() < tolerance,
+                "{value}, {expected}: {line}"
+            );
+        };
+        near(4, 150.0, 1e-6);
+        // 20 N + 2 N/s t and 4 mm/s (t - 0.5 s), averaged from 1 to 2 s.
+        near(6, 23.0, 0.03);
+        near(7, 0.004, 6e-5);
+    }
+    names.sort_unstable();
+    let expected = [
+        "grouser_s-5.5_v25_1,grouser,sand,-0.055",
+        "grouser_s20_v10_1,grouser,sand,0.2",
+    ];
+    assert_eq!(names, expected);
+}
+
+#[test]
+fn raw_recordings_of_a_folder_become_runs_by_the_map_of_the_document() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    let (map, files) = recordings();
+    std::fs::create_dir(at("recordings")).expect("a folder");
+    for (name, content) in &files {
+        std::fs::write(at("recordings").join(name), content).expect("written");
+    }
+    std::fs::write(at("map.toml"), &map).expect("written");
+    let import = |recordings: &Path| {
+        let (map, output) = (shown(&at("map.toml")), shown(&at("runs.csv")));
+        call(
+            "coordinator import {} --map {} --output {}",
+            &[&shown(recordings), &map, &output],
+        )
+    };
+    let ended = import(&at("recordings"));
+    assert_contains!(ended.stderr, "note: 2 of 5 files of ");
+    let output = ended.success();
+    assert!(output.ends_with("runs.csv: 2 runs\n"), "{output}");
+    assert_recorded(&text(&at("runs.csv")));
+    std::fs::write(at("map.toml"), map.replacen("file = ", "# ", 1)).expect("written");
+    let refused = import(&at("recordings")).refusal();
+    assert!(refused.contains("is a folder: `file = "), "{refused}");
+}
+
+#[test]
+fn a_service_imports_recordings_with_the_files_beside_them() {
+    let service = Service::start(&[]);
+    let (map, files) = recordings();
+    let file = |(name, content): &(String, Vec<u8>)| json!({"name": name, "content_base64": BASE64_STANDARD.encode(content)});
+    let ask = |others: Vec<Value>| {
+        let mut body = file(&files[1]);
+        body["map"] = json!(map);
+        body["others"] = json!(others);
+        let answer = service.client.post("/v1/import", &body);
+        assert_eq!(answer.status, 200, "{}", answer.json());
+        answer.json()
+    };
+    let all = ask(files.iter().map(file).collect());
+    assert_recorded(all["runs"].as_str().unwrap_or_else(|| panic!("{all}")));
+    let alone = ask(Vec::new());
+    let said: Vec<&str> = items(&alone["complaints"])
+        .map(|complaint| word(&complaint["message"]))
+        .collect();
+    assert_eq!(said, ["[join.force]: there is no such file among `others`"]);
+}

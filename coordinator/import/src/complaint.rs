@@ -1,5 +1,7 @@
 //! A complaint: a mistake in a file or a map with its place, the expectation, and the nearest fix.
 
+use std::collections::BTreeSet;
+
 use serde::Serialize;
 use shared::sentence::one_line;
 
@@ -63,6 +65,8 @@ impl std::fmt::Display for Complaint {
 #[derive(Debug, Default)]
 pub(crate) struct Complaints {
     all: Vec<Complaint>,
+    /// What is said already: several files may have the same mistake of the map.
+    said: BTreeSet<String>,
     /// For each field: number of complaints, and the last complaint shown.
     by_field: Vec<(Option<String>, usize, Complaint)>,
     /// The cells of the last row that has any, by its line and the field.
@@ -70,8 +74,16 @@ pub(crate) struct Complaints {
 }
 
 impl Complaints {
+    /// Adds a complaint, unless the same one is there.
     pub(crate) fn add(&mut self, complaint: Complaint) {
-        self.all.push(complaint);
+        if self.said.insert(complaint.to_string()) {
+            self.all.push(complaint);
+        }
+    }
+
+    /// Returns the number of complaints.
+    pub(crate) fn len(&self) -> usize {
+        self.all.len()
     }
 
     pub(crate) fn add_cell(&mut self, complaint: Complaint) {

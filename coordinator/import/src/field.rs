@@ -115,7 +115,6 @@ const CONDITIONS: [Entry; 8] = [
             "normal load",
             "normal force",
             "normalkraft",
-            "fz",
         ],
     ),
     (
@@ -207,7 +206,7 @@ const OTHERS: [Entry; 7] = [
 
 /// Titles of a channel's column, in the order of [`Channel::ALL`].
 const CHANNEL_TITLES: [&[&str]; 4] = [
-    &["drawbar pull", "drawbar", "pull", "zugkraft", "dp", "fx"],
+    &["drawbar pull", "drawbar", "pull", "zugkraft", "dp"],
     &["torque", "wheel torque", "drehmoment", "moment", "antriebsmoment"],
     &["sinkage", "depth", "einsinkung", "einsinktiefe", "eindringtiefe"],
     &[
@@ -216,7 +215,6 @@ const CHANNEL_TITLES: [&[&str]; 4] = [
         "side force",
         "seitenkraft",
         "querkraft",
-        "fy",
     ],
 ];
 

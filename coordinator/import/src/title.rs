@@ -41,6 +41,8 @@ pub(crate) struct Titled {
     pub(crate) title_line: usize,
     pub(crate) unit_line: Option<usize>,
     by_text: BTreeMap<String, Vec<usize>>,
+    /// Lines of a text with more or fewer fields than titles, with their number of fields.
+    pub(crate) misfits: BTreeMap<usize, usize>,
     /// Indices of the rows of data: those below the titles that are not blank.
     data: Vec<usize>,
 }
@@ -49,6 +51,23 @@ impl Titled {
     /// Returns the rows below the titles, blank ones left out.
     pub(crate) fn data(&self) -> impl Iterator<Item = &Row> {
         self.data.iter().map(|&position| &self.table.rows[position])
+    }
+
+    /// Adds a column with a cell for each row of data.
+    pub(crate) fn add_column(&mut self, title: Title, cells: impl Iterator<Item = Cell>) {
+        let column = self.titles.len();
+        self.by_text.entry(title.text.clone()).or_default().push(column);
+        self.titles.push(title);
+        for (&position, cell) in self.data.iter().zip(cells) {
+            let row = &mut self.table.rows[position].cells;
+            row.resize(column, Cell::Blank);
+            row.push(cell);
+        }
+    }
+
+    /// Returns whether a row of a text is a comment.
+    pub(crate) fn is_comment(&self, row: &Row) -> bool {
+        self.table.form == Form::Lines && matches!(row.cell(0), Cell::Text(text) if text.starts_with('#'))
     }
 
     /// Returns the column that a map names, by its title or else by its letters.
@@ -189,7 +208,12 @@ pub(crate) fn find(
         by_text.entry(title.text.clone()).or_default().push(column);
     }
     let is_filled = |&position: &usize| !table.rows[position].is_blank();
+    let misfits = match at {
+        Some(at) if table.form == Form::Lines => misfits(&table.rows[first..], table.rows[at].cells.len()),
+        _ => BTreeMap::new(),
+    };
     Ok(Titled {
+        misfits,
         data: (first..table.rows.len()).filter(is_filled).collect(),
         by_text,
         title_line: at.map_or(0, |k| table.rows[k].line),
@@ -197,6 +221,16 @@ pub(crate) fn find(
         titles,
         table,
     })
+}
+
+/// Returns the lines whose number of fields is not that of the titles, blank ones at the end not counted.
+fn misfits(rows: &[Row], width: usize) -> BTreeMap<usize, usize> {
+    let is_misfit = |row: &&Row| {
+        let filled = row.cells.iter().rposition(|cell| !cell.is_blank());
+        filled.is_some_and(|last| last >= width) || row.cells.len() < width
+    };
+    let misfits = rows.iter().filter(is_misfit);
+    misfits.map(|row| (row.line, row.cells.len())).collect()
 }
 
 fn is_number(cell: &Cell) -> bool {

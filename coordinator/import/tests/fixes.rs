@@ -173,7 +173,7 @@ fn a_word_without_a_meaning_is_refused() {
         ),
         (
             "prepared = { column = \"Bemerkung\", words = { Kontrolle = \"fit\" } }",
-            "map.toml line 10: [columns.prepared]: unknown key \"words\"; known are column, value, formula, unit, decimal, fill_down",
+            "map.toml line 10: [columns.prepared]: unknown key \"words\"; known are column, value, formula, unit, decimal, fill_down, from, zero_line, zero_file",
         ),
     ] {
         assert_eq!(with(entry), [complaint], "{entry}");

@@ -200,3 +200,28 @@ fn names_of_runs_csv_are_taken_as_they_are_and_sheets_are_listed() {
         variables.columns
     );
 }
+
+#[test]
+fn a_component_of_force_is_not_proposed_by_its_letter_alone() {
+    let table = b"avg_Fx,avg_Fy,Fz,torque_y,force.z [N],avg_Z,Pull Fx [N]\n1.5,2,3,4,5,6,7\n1,2,3,4,5,6,7\n";
+    let guess = guessed("averages.csv", table);
+    let of = |name: &str| {
+        let field = guess.fields.iter().find(|field| field.name == name);
+        field.and_then(|field| field.column.as_deref())
+    };
+    assert_eq!(of("drawbar_pull_n"), Some("Pull Fx [N]"), "its word says it");
+    for name in ["lateral_force_n", "wheel_load_n", "torque_n_m"] {
+        assert_eq!(of(name), None, "{name}");
+    }
+    assert_eq!(
+        guess.components,
+        ["avg_Fx", "avg_Fy", "Fz", "torque_y", "force.z [N]"]
+    );
+    assert!(
+        guess
+            .map
+            .contains("nor its sign: \"avg_Fx\", \"avg_Fy\", \"Fz\", \"torque_y\", \"force.z [N]\".\n"),
+        "{}",
+        guess.map
+    );
+}

@@ -1,4 +1,4 @@
-//! Every kind of file, mistakes, guesses and recordings.
+//! Every kind of file, mistakes, guesses, recordings and raw recordings.
 
 mod cost;
 mod files;
@@ -6,6 +6,7 @@ mod fixes;
 mod guesses;
 mod mistakes;
 mod properties;
+mod raw;
 mod recordings;
 mod texts;
 

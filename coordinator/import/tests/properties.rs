@@ -3,7 +3,7 @@
 use import::{SourceFile, convert, guess};
 use proptest::prelude::*;
 
-const FILES: [&[u8]; 7] = [
+const FILES: [&[u8]; 8] = [
     include_bytes!("files/runs.xlsx"),
     include_bytes!("files/awkward.xlsx"),
     include_bytes!("files/runs.ods"),
@@ -11,6 +11,7 @@ const FILES: [&[u8]; 7] = [
     include_bytes!("files/struct-v6.mat"),
     include_bytes!("files/elements-v7.mat"),
     include_bytes!("files/vectors-v73.mat"),
+    include_bytes!("files/zero.bag"),
 ];
 
 /// Returns a file with some bytes exchanged, perhaps cut off.
@@ -48,7 +49,7 @@ fn text() -> impl Strategy<Value = Vec<u8>> {
 
 fn map() -> impl Strategy<Value = String> {
     let entry = "columns\\.(slip|run|wheel_load_n|pass) = \\{ (column|value|formula|unit) = \"[a-zA-Z%?*/() 0-9]{0,8}\"(, unit = \"(%|N|kN|\\?)\")? \\}\n";
-    let head = "(titles = [0-9]\n)?(units = [0-9]\n)?(decimal = \"[.,?]\"\n)?(skip = \\[[0-9]\\]\n)?(columns\\.use = \\{ column = \"[a-zA-Z]\", words = \\{ [a-zA-Z]{1,3} = \"(fit|skip|\\?|x)\" \\} \\}\n)?";
+    let head = "(titles = [0-9]\n)?(units = [0-9]\n)?(decimal = \"[.,?]\"\n)?(skip = \\[[0-9]\\]\n)?(columns\\.use = \\{ column = \"[a-zA-Z]\", words = \\{ [a-zA-Z]{1,3} = \"(fit|skip|\\?|x)\" \\} \\}\n)?(recording = \\{ time = \"[AB]\", time_unit = \"s\"(, histories = true)?(, step_s = [0-9.]{1,3})?(, while = \"[a-z<> 0-9]{0,8}\")? \\}\n)?(file = \"[a-z.{}]{0,8}\"\n)?";
     prop_oneof![
         (head, prop::collection::vec(entry, 0..4)).prop_map(|(head, entries)| head + &entries.concat()),
         any::<String>()

@@ -146,8 +146,9 @@ pub struct JobArguments {
 /// Convert a table of measurements to runs.csv, or propose the map for it.
 #[derive(Debug, Args)]
 pub struct ImportArguments {
-    /// The table: text with any separator, a spreadsheet, or a MATLAB file.
-    pub file: PathBuf,
+    /// The table: text with any separator, a spreadsheet, a MATLAB file, or a ROS bag; recordings may be several files, or folders of them.
+    #[arg(value_name = "FILE", required = true)]
+    pub files: Vec<PathBuf>,
     /// Where each column of runs.csv comes from.
     #[arg(
         long,

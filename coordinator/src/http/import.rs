@@ -1,9 +1,13 @@
 //! `/v1/import`: conversion of users' tables of measurements to runs.csv.
 
+use std::borrow::Cow;
+use std::cell::Cell;
+use std::collections::BTreeMap;
+
 use axum::Json;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use import::{Converted, Guess, SourceFile, convert, guess};
+use import::{Converted, Files, Guess, SourceFile, convert_all, files_of, guess};
 use serde::Deserialize;
 use shared::api::{ErrorBody, ErrorKind};
 use tokio::sync::Semaphore;
@@ -13,6 +17,8 @@ use utoipa_axum::routes;
 use super::error::{Body, HttpError};
 use crate::service::Service;
 
+/// Maximum size of what a request reads `[bytes]`; each recording reads its joined and taring files again.
+const MAX_READ_BYTES: usize = 256 << 20;
 /// One table is read at a time, because it may take some hundred megabytes of memory.
 static ONE_AT_A_TIME: Semaphore = Semaphore::const_new(1);
 
@@ -28,10 +34,23 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
 struct ImportRequest {
     /// Name of the file, for messages: `Messung.xlsx`.
     name: String,
-    /// Content of the file in base64: text with separators, .xlsx, .ods, or .mat.
+    /// Content of the file in base64: text with separators, .xlsx, .ods, .mat, or .bag.
     content_base64: String,
     /// Text of the map, TOML.
     map: String,
+    /// Files that the map names beside this one: joined and taring files, and further recordings that fit its `file`.
+    #[serde(default)]
+    others: Vec<OtherFile>,
+}
+
+/// A file beside the one that is converted.
+#[derive(Debug, Deserialize, utoipa::ToSchema)]
+#[serde(deny_unknown_fields)]
+struct OtherFile {
+    /// Name of the file, as the map says it.
+    name: String,
+    /// Content of the file in base64.
+    content_base64: String,
 }
 
 /// A table of measurements.
@@ -40,16 +59,16 @@ struct ImportRequest {
 struct GuessRequest {
     /// Name of the file, for messages: `Messung.xlsx`.
     name: String,
-    /// Content of the file in base64: text with separators, .xlsx, .ods, or .mat.
+    /// Content of the file in base64: text with separators, .xlsx, .ods, .mat, or .bag.
     content_base64: String,
     /// The sheet, or the struct of a MATLAB file; the largest one where none is named.
     sheet: Option<String>,
 }
 
-/// Converts a table to runs.csv.
+/// Converts a table, or recordings, to runs.csv.
 ///
 /// The answer has runs.csv, the notes and the histories, or every mistake of the file and the map with its place. Nothing is stored.
-/// The service does not read .xls files.
+/// The service does not read .xls files. All files together are at most one request.
 #[utoipa::path(post, path = "/import", operation_id = "import_table", tag = "import",
     request_body = ImportRequest,
     responses(
@@ -61,11 +80,38 @@ async fn import_table(Body(asked): Body<ImportRequest>) -> Result<Json<Converted
         name,
         content_base64,
         map,
+        others,
     } = asked;
-    let converted = read_alone(name, content_base64, move |source| {
-        convert(source, ("map.toml", &map), "runs")
+    let converted = alone(move || {
+        let mut contents = BTreeMap::from([(name.clone(), decoded(content_base64)?)]);
+        let mut others_names = Vec::with_capacity(others.len());
+        for other in others {
+            if other.name != name {
+                others_names.push(other.name.clone());
+                contents.insert(other.name, decoded(other.content_base64)?);
+            }
+        }
+        let mut names = vec![name];
+        names.extend(files_of(&map, &others_names).unwrap_or_default());
+        let read = Cell::new(0);
+        let open = |name: &str| {
+            let bytes = contents.get(name).ok_or("there is no such file among `others`")?;
+            read.set(read.get() + bytes.len());
+            if read.get() > MAX_READ_BYTES {
+                return Err(format!(
+                    "the files of a request are read again and again, more than {MAX_READ_BYTES} bytes: send fewer recordings at once"
+                ));
+            }
+            Ok(Cow::Borrowed(bytes.as_slice()))
+        };
+        let files = Files {
+            names: &names,
+            open: &open,
+            is_own: false,
+        };
+        Ok(convert_all(files, ("map.toml", &map), "runs"))
     });
-    Ok(Json(converted.await?))
+    converted.await?.map(Json)
 }
 
 /// Proposes a map for a table.

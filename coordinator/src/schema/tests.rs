@@ -73,7 +73,7 @@ const fn place(kind: FileKind, head: &'static str, pointer: &'static str) -> Pla
     Place { kind, head, pointer }
 }
 
-const PLACES: [Place; 17] = [
+const PLACES: [Place; 18] = [
     place(FileKind::Job, "", ""),
     place(
         FileKind::Job,
@@ -139,6 +139,11 @@ const PLACES: [Place; 17] = [
         "/properties/columns/properties/slip",
     ),
     place(FileKind::Map, "[recording]\n", "/properties/recording"),
+    place(
+        FileKind::Map,
+        "[join.a]\n",
+        "/properties/join/additionalProperties",
+    ),
 ];
 
 #[test]

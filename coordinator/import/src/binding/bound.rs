@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use formula::expression::Expression;
 use formula::unit::Unit as Dimension;
 
 use super::maker::{Maker, dimension};
@@ -21,6 +22,8 @@ pub(crate) struct Binding {
     /// The columns that have the names and units of runs.csv.
     pub(crate) mapped: BTreeSet<usize>,
     missing: BTreeSet<String>,
+    /// 1 during a run of a recording that is told by a condition.
+    condition: Option<Expression>,
 }
 
 /// The cells above a row, by which blank cells may be filled.
@@ -64,6 +67,7 @@ impl Binding {
             outputs: Vec::new(),
             mapped: BTreeSet::new(),
             missing: map.missing.clone(),
+            condition: None,
         };
         let mut names = binding.bind_quantities(map, &mut maker);
         let by_name = |field: &Field| map.columns.iter().find(|entry| entry.name == field.name);
@@ -90,6 +94,7 @@ impl Binding {
                 binding.bind(field, entry, source, titled);
             }
         }
+        binding.condition = maker.condition(&names);
         for (field, entry, text, quantity) in formulas {
             if let Some(expression) = maker.formula(entry, text, quantity, &names) {
                 binding.outputs.push(Output {
@@ -155,7 +160,7 @@ impl Binding {
                     Cell::NoResult => Some(Err("the formula of this cell has no stored result: open the file in its program, let it compute, and save it again".into())),
                 };
                 match number? {
-                    Ok(value) => Some(value * with.si),
+                    Ok(value) => Some((value - with.at_rest) * with.si),
                     Err(message) => {
                         complaints.add_cell(cell_complaint(titled, row, *column, &input.name, message));
                         None
@@ -243,17 +248,19 @@ impl Binding {
     pub(crate) fn value(&self, output: &Output, numbers: &[Option<f64>]) -> Option<f64> {
         let si = match &output.source {
             Source::Input(input) => numbers.get(*input).copied().flatten()?,
-            Source::Formula(expression) => {
-                let is_there = |place: &usize| numbers.get(*place).is_some_and(Option::is_some);
-                if !expression.used().iter().all(is_there) {
-                    return None;
-                }
-                let values: Vec<f64> = numbers.iter().map(|value| value.unwrap_or(f64::NAN)).collect();
-                expression.value(&values)
-            }
+            Source::Formula(expression) => computed(expression, numbers)?,
             Source::Text(_) => return None,
         };
         Some(si / output.field.si_per_unit())
+    }
+
+    /// Returns whether a row with these numbers lies within a run; a row with a blank that the condition needs does not.
+    pub(crate) fn is_within_a_run(&self, numbers: &[Option<f64>]) -> bool {
+        let value = self
+            .condition
+            .as_ref()
+            .map(|condition| computed(condition, numbers));
+        value.is_none_or(|value| value.is_some_and(|value| value > 0.5))
     }
 
     /// Returns a complaint about a row's value for a column of runs.csv, at the cell that gives it.
@@ -278,6 +285,16 @@ impl Binding {
             },
         }
     }
+}
+
+/// Returns the value of a formula; `None` if a needed number is blank.
+fn computed(expression: &Expression, numbers: &[Option<f64>]) -> Option<f64> {
+    let is_there = |place: &usize| numbers.get(*place).is_some_and(Option::is_some);
+    if !expression.used().iter().all(is_there) {
+        return None;
+    }
+    let values: Vec<f64> = numbers.iter().map(|value| value.unwrap_or(f64::NAN)).collect();
+    Some(expression.value(&values))
 }
 
 pub(crate) fn cell_complaint(

@@ -6,7 +6,7 @@ use formula::unit::Unit as Dimension;
 use super::source::{From, Input, Reading};
 use crate::complaint::{Complaint, Complaints};
 use crate::field::Field;
-use crate::map::{Entry, Map, Origin, QUESTION, quantity_of};
+use crate::map::{Entry, Map, Mark, Origin, QUESTION, quantity_of};
 use crate::number::{self, Decimal, Evidence, Writing};
 use crate::table::Cell;
 use crate::title::{Stated, Title, Titled};
@@ -20,13 +20,6 @@ pub(super) struct Maker<'a> {
     pub(super) fields: &'a [Field],
     pub(super) remarks: &'a mut Vec<String>,
     pub(super) complaints: &'a mut Complaints,
-}
-
-fn column_name(entry: &Entry) -> &str {
-    match &entry.origin {
-        Origin::Column(name) => name,
-        Origin::Value(_) | Origin::Formula(_) => "",
-    }
 }
 
 /// Returns the dimension that formulas have for a quantity.
@@ -63,8 +56,12 @@ impl<'a> Maker<'a> {
         field.map(|field| field.words.as_str())
     }
 
+    /// Returns the column of an entry; one whose joined file could not be joined has a complaint already.
     fn column(&mut self, entry: &Entry) -> Option<usize> {
-        let result = self.titled.column(column_name(entry));
+        if entry.from.is_some() {
+            return None;
+        }
+        let result = self.titled.column(entry.column().unwrap_or_default());
         result.map_err(|message| self.complain(entry, message)).ok()
     }
 
@@ -153,6 +150,7 @@ impl<'a> Maker<'a> {
                     writing: None,
                     stated_decimal: entry.decimal,
                     si: unit.si,
+                    at_rest: entry.reading_at_rest,
                 };
                 let from = From::Column {
                     column,
@@ -198,7 +196,10 @@ impl<'a> Maker<'a> {
         let unit = self.unit(entry, None, quantity);
         // A value in TOML is a number; one in quotes may be written as in the file.
         let writing = Writing {
-            decimal: entry.decimal.or(self.map.decimal).unwrap_or(Decimal::Point),
+            decimal: entry
+                .decimal
+                .or(self.map.layout.decimal)
+                .unwrap_or(Decimal::Point),
             has_thousands: false,
         };
         let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
@@ -321,9 +322,27 @@ impl<'a> Maker<'a> {
         }
     }
 
+    /// Returns the condition that holds during a run, as a formula that is 1 where it does.
+    pub(super) fn condition(&mut self, names: &[(String, Dimension)]) -> Option<Expression> {
+        let recording = self.map.recording.as_ref()?;
+        let Mark::Condition { text, .. } = &recording.mark else {
+            return None;
+        };
+        let formula = format!("if({text}, 1, 0)");
+        let wrong = |message| Complaint {
+            file: self.map_file.to_owned(),
+            line: Some(recording.line),
+            field: Some("recording".into()),
+            message: format!("[recording]: while, as the formula \"{formula}\": {message}"),
+            ..Complaint::default()
+        };
+        let read = Expression::read(&formula, names).map_err(wrong);
+        read.map_err(|complaint| self.complaints.add(complaint)).ok()
+    }
+
     /// The notation of numbers: as the map states it, otherwise as the texts of all columns show.
     pub(super) fn settle_decimals(&mut self, inputs: &mut [Input]) {
-        let stated = self.map.decimal;
+        let stated = self.map.layout.decimal;
         let columns: Vec<usize> = inputs
             .iter()
             .filter_map(|input| match &input.from {

@@ -42,6 +42,8 @@ pub(super) struct Reading {
     pub(super) stated_decimal: Option<Decimal>,
     /// One unit in SI units.
     pub(super) si: f64,
+    /// The reading at rest, in the unit of the column.
+    pub(super) at_rest: f64,
 }
 
 /// A quantity that is read from every row, in SI units.

@@ -91,6 +91,8 @@ pub struct Guess {
     pub fields: Vec<FieldGuess>,
     /// The quantities of proposed formulas.
     pub quantities: Vec<QuantityGuess>,
+    /// Columns that are components of a force or a moment by the letter of an axis alone, and are proposed as nothing.
+    pub components: Vec<String>,
     /// The decimal mark of numbers in texts: `.` or `,`; `?` if they can be read in two ways; null if there are none.
     pub decimal: Option<String>,
     /// Remarks on detected properties of the file.

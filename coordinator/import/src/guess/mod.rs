@@ -56,6 +56,9 @@ pub fn guess(source: &SourceFile<'_>, sheet: Option<&str>) -> Result<Guess, Box<
         .zip(fields)
         .map(|(field, column)| field_guess(field, column, &titled, &columns))
         .collect();
+    let components = names.iter().zip(&columns).zip(&used);
+    let components = components.filter(|((name, _), is_used)| !**is_used && word::is_component(name));
+    let components = components.map(|((_, card), _)| card.name.clone()).collect();
     let quantities = from_rotation(&mut guessed, &titled, &columns, &mut used);
     from_words(&mut guessed, &columns, &mut used);
     let mut proposal = Guess {
@@ -67,6 +70,7 @@ pub fn guess(source: &SourceFile<'_>, sheet: Option<&str>) -> Result<Guess, Box<
         columns,
         fields: guessed,
         quantities,
+        components,
         decimal,
         remarks: titled.table.remarks.clone(),
     };
@@ -177,6 +181,8 @@ fn column_for(
         match (title.stated, field.quantity()) {
             (Stated::Unit(unit), Some(quantity)) if unit.quantity != quantity => 0,
             (Stated::Unit(_), None) => 0,
+            // The letter of an axis says neither which force it is on the rig nor its sign.
+            (_, Some(Quantity::Force | Quantity::Torque)) if word::is_component(&names[*column]) => 0,
             _ => fit(field, &names[*column]),
         }
     };

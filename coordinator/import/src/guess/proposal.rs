@@ -31,7 +31,20 @@ pub(super) fn text(file: &str, guess: &Guess, form: Form, rows: usize) -> String
             unit_line(quantity.unit.as_deref(), &quantity.units)
         );
     }
-    text + &unmapped(guess, rows)
+    text + &components(guess) + &unmapped(guess, rows)
+}
+
+/// Returns the statement about components that are proposed as nothing.
+fn components(guess: &Guess) -> String {
+    let Some(first) = guess.components.first() else {
+        return String::new();
+    };
+    let listed: Vec<String> = guess.components.iter().map(|name| quoted(name)).collect();
+    format!(
+        "\n# Letters of axes do not say which force or moment this is on the rig, nor its sign: {}.\n# Say it by the rig's axes, as\n# [columns.drawbar_pull_n]      # positive where the wheel pulls forward\n# formula = \"-f\"\n# [quantities.f]\n# column = {}\n# unit = \"N\"\n",
+        listed.join(", "),
+        quoted(first)
+    )
 }
 
 fn header(file: &str, guess: &Guess, form: Form) -> String {

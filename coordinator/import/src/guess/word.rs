@@ -26,6 +26,22 @@ const HELD_OUT: [&str; 13] = [
     "validierungsversuch",
     "gegenprobe",
 ];
+/// Words that alone, or beside the letter of an axis, say no more than that a column is a component of force or moment.
+const OF_A_SENSOR: [&str; 11] = [
+    "f",
+    "force",
+    "kraft",
+    "m",
+    "t",
+    "torque",
+    "moment",
+    "drehmoment",
+    "wrench",
+    "sensor",
+    "ft",
+];
+/// Components in one word.
+const COMPONENTS: [&str; 9] = ["fx", "fy", "fz", "mx", "my", "mz", "tx", "ty", "tz"];
 
 /// Returns the different words of a column in alphabetical order; none if they are too many or too long.
 pub(super) fn words<'a>(rows: impl Iterator<Item = &'a Row>, column: usize) -> Vec<WordCard> {
@@ -87,4 +103,46 @@ pub(super) fn could_mark(column: &ColumnCard, rows: usize) -> bool {
     !column.words.is_empty()
         && column.words.iter().all(is_word)
         && (filled < rows || (column.words.len() > 1 && column.words.len() < filled))
+}
+
+/// Returns whether a title in separate lower-case words names a component by the letter of its axis, and nothing that tells its direction on the
+/// rig: `fx`, `force z`, not `normal force z`.
+pub(super) fn is_component(name: &str) -> bool {
+    let is_axis = |word: &str| ["x", "y", "z"].contains(&word);
+    let has_letter = name
+        .split(' ')
+        .any(|word| is_axis(word) || COMPONENTS.contains(&word));
+    let is_told = |word: &str| !(is_axis(word) || COMPONENTS.contains(&word) || OF_A_SENSOR.contains(&word));
+    let is_of_a_sensor = name.split(' ').any(|word| !is_axis(word));
+    has_letter && is_of_a_sensor && !name.split(' ').any(is_told)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_component_is_told_from_a_direction_on_the_rig() {
+        for name in [
+            "fx",
+            "f x",
+            "force x",
+            "wrench force z",
+            "torque y",
+            "ft sensor mz",
+        ] {
+            assert!(is_component(name), "{name}");
+        }
+        for name in [
+            "x",
+            "load z",
+            "normal force z",
+            "wheel torque y",
+            "pull",
+            "force",
+            "axle fx",
+        ] {
+            assert!(!is_component(name), "{name}");
+        }
+    }
 }

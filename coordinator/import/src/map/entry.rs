@@ -135,6 +135,29 @@ impl<'a> Keys<'a> {
         value
     }
 
+    /// Returns a finite number.
+    pub(super) fn number(&mut self, complaints: &mut Complaints, key: &'static str) -> Option<f64> {
+        let item = self.item(key)?;
+        let integer = || item.as_integer().map(|number| number as f64);
+        let value = item
+            .as_float()
+            .or_else(integer)
+            .filter(|number| number.is_finite());
+        if value.is_none() {
+            self.wrong(complaints, Some(item), format!("{key} must be a number in s"));
+        }
+        value
+    }
+
+    /// Returns a number above 0.
+    pub(super) fn positive(&mut self, complaints: &mut Complaints, key: &'static str) -> Option<f64> {
+        let value = self.number(complaints, key)?;
+        if value <= 0.0 {
+            self.complain(complaints, key, format!("{key} {value} s must be > 0"));
+        }
+        (value > 0.0).then_some(value)
+    }
+
     /// Returns a list of numbers or texts, as texts.
     pub(super) fn list(&mut self, complaints: &mut Complaints, key: &'static str) -> Vec<String> {
         let Some(item) = self.item(key) else {

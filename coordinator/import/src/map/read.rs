@@ -6,17 +6,19 @@ use formula::nesting::too_deep;
 use shared::file::unknown_word;
 use toml_edit::{Document, TableLike};
 
-use super::content::{Entry, Map, Origin, QUESTION, Recording};
+use super::content::{Entry, Join, Map, Origin, Zero};
 use super::entry::{Keys, Source};
-use crate::complaint::Complaints;
+use super::{join, recording};
+use crate::complaint::{Complaint, Complaints};
 use crate::field::Field;
 use crate::number::Decimal;
-use crate::read::Hints;
 
 /// Maximum nesting of brackets; a map needs three.
 const DEEPEST: usize = 16;
 /// Maximum number of columns or quantities in a map. A runs.csv has about two dozen, and each is compared with all titles.
 const MAX_ENTRIES: usize = 200;
+/// Maximum number of joined files.
+const MAX_JOINS: usize = 8;
 /// Maximum size of a map `[bytes]`.
 const LARGEST: usize = 1 << 20;
 
@@ -39,16 +41,9 @@ pub(crate) fn read(file: &str, text: &str, fields: &[Field], complaints: &mut Co
         }
     };
     let mut keys = Keys::new(&source, document.as_table(), "", None);
-    map.hints = Hints {
-        sheet: keys.scalar(complaints, "sheet"),
-        encoding: keys.text(complaints, "encoding"),
-        separator: keys.text(complaints, "separator"),
-        takes_largest: false,
-    };
-    map.titles = keys.line_number(complaints, "titles");
-    map.units = keys.line_number(complaints, "units");
-    map.decimal = decimal(&mut keys, complaints);
-    map.has_thousands = thousands(&mut keys, complaints, map.decimal);
+    map.file = join::pattern(&mut keys, "file", complaints);
+    map.layout = join::layout(&mut keys, complaints);
+    map.has_thousands = thousands(&mut keys, complaints, map.layout.decimal);
     for line in keys.list(complaints, "skip") {
         match line.parse() {
             Ok(line) => {
@@ -68,26 +63,46 @@ pub(crate) fn read(file: &str, text: &str, fields: &[Field], complaints: &mut Co
     if let Some(quantities) = keys.table(complaints, "quantities") {
         map.quantities = entries(&source, quantities, "quantities", complaints, None);
     }
-    if let Some(recording) = keys.table(complaints, "recording") {
-        map.recording = read_recording(&source, recording, complaints);
+    if let Some(table) = keys.table(complaints, "recording") {
+        map.recording = recording::read(&source, table, complaints);
+    }
+    if let Some(table) = keys.table(complaints, "join") {
+        map.joins = joins(&source, table, complaints);
     }
     keys.end(complaints);
+    for entry in map.entries() {
+        let is_known = |from: &String| map.joins.iter().any(|join| join.name == *from);
+        if let Some(from) = entry.from.as_ref().filter(|from| !is_known(from)) {
+            let names = map.joins.iter().map(|join| join.name.as_str());
+            let message = format!("{}: {}", entry.name, unknown_word("joined file", from, names));
+            complaints.add(Complaint {
+                line: Some(entry.line),
+                ..source.complaint(None, Some(&entry.name), message)
+            });
+        }
+    }
     map
 }
 
-fn decimal(keys: &mut Keys<'_>, complaints: &mut Complaints) -> Option<Decimal> {
-    let mark = keys.text(complaints, "decimal")?;
-    let decimal = Decimal::from_mark(&mark);
-    if mark == QUESTION {
-        keys.ask(complaints, "decimal", "decimal = \"?\" asks for an answer: write \",\" where 1,234 is a little more than one, \".\" where it is more than a thousand", "Is 1,234 a little more than one, or more than a thousand?");
-    } else if decimal.is_none() {
-        keys.complain(
-            complaints,
-            "decimal",
-            format!("decimal \"{mark}\" must be \".\" or \",\""),
-        );
+/// Reads the tables of joined files; mistaken ones are left out.
+fn joins(source: &Source<'_>, tables: &dyn TableLike, complaints: &mut Complaints) -> Vec<Join> {
+    let mut joins = Vec::new();
+    if tables.len() > MAX_JOINS {
+        let message = format!("[join]: {} tables must be at most {MAX_JOINS}", tables.len());
+        complaints.add(source.complaint(None, None, message));
+        return joins;
     }
-    decimal
+    for (name, item) in tables.iter() {
+        let byte = item.span().map(|span| span.start);
+        match item.as_table_like() {
+            Some(table) => joins.extend(join::read(source, name, table, complaints)),
+            None => {
+                let message = format!("[join.{name}] must be a table, as {{ file = \"{{stem}}.bag\", … }}");
+                complaints.add(source.complaint(byte, None, message));
+            }
+        }
+    }
+    joins
 }
 
 fn thousands(keys: &mut Keys<'_>, complaints: &mut Complaints, decimal: Option<Decimal>) -> bool {
@@ -160,8 +175,14 @@ fn entry(
     let value = keys.scalar(complaints, "value").map(Origin::Value);
     let formula = keys.text(complaints, "formula").map(Origin::Formula);
     let unit = keys.text(complaints, "unit");
-    let decimal = decimal(&mut keys, complaints);
+    let decimal = join::decimal(&mut keys, complaints);
     let fills_down = keys.flag(complaints, "fill_down");
+    let from = keys.text(complaints, "from");
+    let zero = zero(&mut keys, complaints);
+    if column.is_none() && (from.is_some() || zero.is_some()) {
+        let message = "from, zero_line and zero_file belong to a column: state `column`, or leave them out";
+        keys.complain(complaints, "", message);
+    }
     let words = if has_words {
         keys.words(complaints, "words")
     } else {
@@ -177,6 +198,9 @@ fn entry(
             unit,
             decimal,
             fills_down,
+            from,
+            zero,
+            reading_at_rest: 0.0,
             words,
         }),
         (Some(_), None) => None,
@@ -192,58 +216,13 @@ fn entry(
     }
 }
 
-fn read_recording(
-    source: &Source<'_>,
-    table: &dyn TableLike,
-    complaints: &mut Complaints,
-) -> Option<Recording> {
-    let mut keys = Keys::new(source, table, "[recording]", Some("recording"));
-    let time = keys.text(complaints, "time");
-    let time_unit = keys.text(complaints, "time_unit");
-    let marker = keys.text(complaints, "marker");
-    let between = keys.list(complaints, "between").into_iter().collect();
-    let window = keys.list(complaints, "window_s");
-    let histories = keys.flag(complaints, "histories");
-    keys.end(complaints);
-    let window_s = match window.as_slice() {
-        [] => None,
-        [from, to] => match (from.parse(), to.parse()) {
-            (Ok(from), Ok(to)) if 0.0 <= from && from < to => Some((from, to)),
-            _ => {
-                keys.complain(
-                    complaints,
-                    "window_s",
-                    format!("[{from}, {to}] must be two times in s, the second after the first"),
-                );
-                None
-            }
-        },
-        _ => {
-            keys.complain(
-                complaints,
-                "window_s",
-                "window_s must be two times in s, as [20, 60]",
-            );
-            None
-        }
-    };
-    let (Some(time), Some(time_unit), Some(marker)) = (time, time_unit, marker) else {
-        let message = "a recording needs time (a column), time_unit and marker (the column that changes from run to run)";
-        keys.complain(complaints, "", message);
-        return None;
-    };
-    let line = table
-        .iter()
-        .next()
-        .and_then(|(_, item)| item.span())
-        .map_or(1, |span| source.line(span.start));
-    keys.is_right.then_some(Recording {
-        line,
-        time,
-        time_unit,
-        marker,
-        between,
-        window_s,
-        histories,
-    })
+/// Returns what is subtracted from the readings of a column.
+fn zero(keys: &mut Keys<'_>, complaints: &mut Complaints) -> Option<Zero> {
+    let line = keys.line_number(complaints, "zero_line").map(Zero::Line);
+    let file = join::pattern(keys, "zero_file", complaints).map(Zero::File);
+    if line.is_some() && file.is_some() {
+        let message = "the reading at rest stands in zero_line or in zero_file: leave one of them out";
+        keys.complain(complaints, "zero_file", message);
+    }
+    line.or(file)
 }

@@ -25,8 +25,15 @@ pub(crate) fn read(source: &SourceFile<'_>, hints: &Hints) -> Result<Table, Box<
         super::sheet::read_old(source, hints)
     } else if begins(b"\x89HDF\r\n\x1a\n") || begins(b"MATLAB 7.3 MAT-file") {
         super::variable::table(source.name, super::mat73::read(source.bytes), hints)
+    } else if begins(super::bag::MAGIC) {
+        super::bag::read(source.name, source.bytes, hints)
     } else if begins(b"MATLAB 5.0 MAT-file") {
         super::variable::table(source.name, super::mat5::read(source.bytes), hints)
+    } else if begins(b"#ROSBAG") || source.name.to_lowercase().ends_with(".bag") {
+        Err(wrong(
+            "this is a bag of another format than ROS 1, version 2.0: convert it, as by `rosbags-convert`"
+                .into(),
+        ))
     } else if source.name.to_lowercase().ends_with(".mat") {
         Err(wrong(
             "this is no MATLAB file of version 5, 7 or 7.3: save it again with save('NAME.mat', '-v7')"

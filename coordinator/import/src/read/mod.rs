@@ -5,9 +5,11 @@
 //! - `text`: text with separators; `encoding`, `separator`: their detection.
 //! - `sheet`: spreadsheets; `archive`: their size before they are unpacked.
 //! - `variable`: the variables of a MATLAB file as a table; `mat5`, `mat73`: its two formats.
+//! - `bag`: the wrenches of a ROS 1 bag.
 
 mod any;
 mod archive;
+mod bag;
 mod encoding;
 mod mat5;
 mod mat73;
