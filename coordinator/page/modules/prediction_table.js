@@ -7,8 +7,9 @@ import { rimSpeed } from "./words/group.js";
  * @typedef {{ wheel: string, slip: number, load: number, speed: number }} Place in SI; speed: of the rim or the sled, whichever the rig held
  * @typedef {{ mean: number, low: number, high: number, isMeasurement: boolean }} Spread low, high: 90 % of new measurements, or of what the
  *   parameters alone say where the noise is not known (isMeasurement: false)
- * @typedef {{ wheel: string, slips: number[], loads: number[], speeds: number[], at: (Map<string, Spread> | null)[] }} Table
- *   at: the quantities by slip, then load, then speed; null where the model refuses
+ * @typedef {{ draws: number, of: number, reason: string }} Refusal at how many of the draws the model refuses a condition, and why
+ * @typedef {{ wheel: string, slips: number[], loads: number[], speeds: number[], at: (Map<string, Spread> | null)[], refusals: (Refusal | null)[] }} Table
+ *   at: the quantities by slip, then load, then speed; null where the model refuses. refusals: in the same order
  */
 
 /** Slips of a curve. */
@@ -72,7 +73,7 @@ const three = (/** @type {[number, number]} */ [low, high]) => (low === high ? [
 function planOf(/** @type {string} */ wheel, /** @type {number[]} */ slips, /** @type {number[]} */ loads, /** @type {number[]} */ speeds, /** @type {boolean} */ isRim) {
   const rows = slips.flatMap((slip) => loads.flatMap((load) => speeds.map((speed) => [wheel, slip, load, sledSpeed(slip, speed, isRim)])));
   const plan = `${["wheel,slip,wheel_load_n,sled_speed_m_s", ...rows.map((row) => row.join(","))].join("\n")}\n`;
-  return { plan, fill: (/** @type {any[]} */ runs) => ({ wheel, slips, loads, speeds, at: spreads(runs) }) };
+  return { plan, fill: (/** @type {any[]} */ runs) => ({ wheel, slips, loads, speeds, at: spreads(runs), refusals: runs.map((run) => run.refused ?? null) }) };
 }
 
 /** The plan of a grid over all conditions. */
@@ -117,6 +118,24 @@ export function curve({ slips, loads, speeds, at }, quantity, { load, speed }) {
     const of = (/** @type {"mean" | "low" | "high"} */ key) => through(loads, cells.map((row) => through(speeds, row.map((cell) => /** @type {Spread} */ (cell)[key]), speed)), load);
     return [{ slip, mean: of("mean"), low: of("low"), high: of("high"), isMeasurement: /** @type {Spread} */ (cells[0][0]).isMeasurement }];
   });
+}
+
+/**
+ * Where the model refuses so many draws that a curve has no value.
+ * @param {Table} table of one load and speed
+ * @returns {{ spans: [number, number][], isWhole: boolean, refusal: Refusal } | null} spans: of slips beside each other. isWhole: no slip is
+ *   left. refusal: that of the first. null where nothing is refused.
+ */
+export function refused({ slips, at, refusals }) {
+  /** @type {[number, number][]} */
+  const spans = [];
+  slips.forEach((slip, k) => {
+    if (at[k] !== null) return;
+    if (k > 0 && at[k - 1] === null) /** @type {[number, number]} */ (spans.at(-1))[1] = slip;
+    else spans.push([slip, slip]);
+  });
+  const refusal = refusals.find((one, k) => one !== null && at[k] === null);
+  return refusal ? { spans, isWhole: at.every((quantities) => quantities === null), refusal } : null;
 }
 
 /** The slopes of a monotone cubic through points (Steffen 1990), as the pictures draw it. */

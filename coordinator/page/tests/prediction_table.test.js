@@ -1,7 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { atSlip, beyond, curve, curvePlan, fittedRanges, gridPlan, holdsRim, reach } from "../modules/prediction_table.js";
+import { atSlip, beyond, curve, curvePlan, fittedRanges, gridPlan, holdsRim, reach, refused } from "../modules/prediction_table.js";
+import { reasonWords } from "../modules/words/refusal.js";
 
 const run = (slip, load, speed) => ({ slip, wheel_load_n: load, sled_speed_m_s: speed });
 /** Answers of a service whose quantity is a function of the condition. */
@@ -86,4 +87,23 @@ test("an interval says whether it is that of new measurements, and a curve has o
   const other = curve(fill(runs.map((run) => quantity(run, { models_measurement: null }))), "other", place);
   assert.equal(atSlip(other, 0.3).isMeasurement, true);
   near(atSlip(other, 0.3).high - atSlip(other, 0.3).low, 2);
+});
+
+test("slips that the model refuses are named with its reason, and a curve that has none left is known", () => {
+  const ranges = { slip: [0, 0.7], load: [90, 90], speed: [0.02, 0.02] };
+  const { plan, fill } = curvePlan({ wheel: "w", slip: 0.7, load: 90, speed: 0.02 }, ranges, false);
+  const refusal = { draws: 40, of: 40, reason: "no_support: condition 3: the soil carries at most 80 N of the 90 N wheel load" };
+  const runs = answered(plan, (slip) => slip);
+  const table = fill(runs);
+  assert.equal(refused(table), null);
+  const some = fill(runs.map((run, k) => (k < 2 || k === 5 ? { quantities: [], refused: refusal } : run)));
+  const { spans, isWhole, refusal: found } = refused(some);
+  assert.deepEqual(spans, [[some.slips[0], some.slips[1]], [some.slips[5], some.slips[5]]]);
+  assert.ok(!isWhole && found === refusal);
+  assert.equal(curve(some, "q", { load: 90, speed: 0.02 }).length, some.slips.length - 3);
+  assert.equal(reasonWords(refusal.reason), "the soil carries at most 80 N of the 90 N wheel load");
+  const all = refused(fill(runs.map(() => ({ quantities: [], refused: refusal }))));
+  assert.ok(all.isWhole && all.spans.length === 1);
+  // A condition that is refused at few draws is predicted by the others.
+  assert.equal(refused(fill(runs.map((run) => ({ ...run, refused: { ...refusal, draws: 1 } })))), null);
 });

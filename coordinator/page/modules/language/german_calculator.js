@@ -88,6 +88,9 @@ export const CALCULATOR = {
   "that a new measurement says so": "dass eine neue Messung es so zeigt",
   "The cost is not known: {0}.": "Die Kosten sind nicht bekannt: {0}.",
   "the measured runs": "die gemessenen Fahrten",
+  "The model refuses every slip from {0} at {1}: {2}. Move the sliders, or choose another model.":
+    "Das Modell lehnt jeden Schlupf von {0} bei {1} ab: {2}. Verschieben Sie die Regler, oder wählen Sie ein anderes Modell.",
+  "The model refuses slip {0} at {1}: {2}.": "Das Modell lehnt den Schlupf {0} bei {1} ab: {2}.",
   "The model rejected {0} % of its parameter vectors.": "Das Modell hat {0} % der Parametervektoren abgelehnt.",
   "The program computes the curves …": "Das Programm rechnet die Kurven …",
   "The search that may follow is not in it.": "Die Suche, die folgen kann, ist nicht enthalten.",
@@ -101,5 +104,6 @@ export const CALCULATOR = {
   Whole: "Ganzes",
   "wheels {0}": "Räder {0}",
   "Within the fitted range.": "Innerhalb des angepassten Bereichs.",
+  "{0} (at {1} of {2} draws)": "{0} (bei {1} von {2} Ziehungen)",
   "{0} fitted runs with {1} measurements, {2} held out": "{0} angepasste Fahrten mit {1} Messungen, {2} zurückgehalten",
 };

@@ -12,6 +12,7 @@ import { loadWords, slipWords, speedWords } from "../words/condition.js";
 import { rimSpeed } from "../words/group.js";
 import { channelOf, intervalName, measuredQuantities, quantityName, shownQuantities, statementOf } from "../words/predicted_quantity.js";
 import { capital, digits, minus, numberOf, probability, shown, titled } from "../words/quantity.js";
+import { reasonWords } from "../words/refusal.js";
 
 /** Draws of the grid: enough for a curve to follow the sliders; what stands still is computed with all draws. */
 const GRID_DRAWS = 40;
@@ -66,19 +67,32 @@ function Calculator(/** @type {{ study: any, model: any, rows: any[], fitted: an
         ${CONDITIONS.map((key) => reach[key][1] > reach[key][0] && html`<${Slider} key=${key} id=${`predict-${key}`} label=${labels[key]} text=${words[key](place[key])} value=${place[key]} range=${reach[key]} isBeyond=${outside.includes(key)} move=${(/** @type {number} */ value) => set({ [key]: value })} />`)}
         <p class=${`reach ${outside.length > 0 ? "beyond" : ""}`} role="status">${outside.length === 0 ? t`Within the fitted range.`
           : t`Beyond the fitted range in ${outside.map((key) => `${labels[key]} (${words[key](ranges[key][0])}${t` to `}${words[key](ranges[key][1])})`).join(", ")}: nothing tells whether the model still holds there.`}</p>
-        <p><label>Quantity <select onChange=${(/** @type {any} */ e) => { setChosen(e.target.value); setStatement({ ...statement, limit: "" }); }}>${quantities.map(({ name }) => html`<option value=${name} selected=${name === found?.name}>${quantityName(name)}</option>`)}</select></label></p>
+        ${quantities.length > 0 && html`<p><label>Quantity <select onChange=${(/** @type {any} */ e) => { setChosen(e.target.value); setStatement({ ...statement, limit: "" }); }}>${quantities.map(({ name }) => html`<option value=${name} selected=${name === found?.name}>${quantityName(name)}</option>`)}</select></label></p>`}
         ${found && html`<${Statement} found=${found} statement=${statement} change=${setStatement} answer=${rest.statement} isBusy=${rest.isBusy} isNumber=${limit !== null} />`}
       </div>
       <div>
         ${isRolling && !isAsked && html`<p>This model rolls over terrain: a prediction takes minutes. <button type="button" onClick=${() => setAsked(true)}>Predict here</button></p>`}
         <${Failure} error=${rest.error ?? grid.error} />
-        ${found && points.length > 0
-          ? html`<${PredictionChart} quantity=${found} points=${points} here=${here} fitted=${ranges.slip} measured=${near} name=${study.name} />`
-          : (isAsked && !rest.error && html`<p class="empty" aria-busy="true">The program computes the curves …</p>`)}
-        ${source && found && html`<${Values} source=${source} quantities=${quantities} place=${place} />
+        ${found && points.length > 1 && html`<${PredictionChart} quantity=${found} points=${points} here=${here} fitted=${ranges.slip} measured=${near} name=${study.name} />`}
+        ${rest.table && html`<${Refused} source=${rest.table} place=${place} words=${words} />`}
+        ${points.length < 2 && !rest.table && isAsked && !rest.error && html`<p class="empty" aria-busy="true">The program computes the curves …</p>`}
+        ${source && found && points.length > 1 && html`<${Values} source=${source} quantities=${quantities} place=${place} />
           <p class="note" role="status">${rest.table ? t`Computed at this condition with ${rest.draws} draws.` : t`Interpolated between computed conditions; it is computed when the sliders rest.`}</p>`}
       </div>
     </div>`;
+}
+
+/** What the model refuses, and why: in the place of the curve where no slip is left. */
+function Refused(/** @type {{ source: table.Table, place: table.Place, words: any }} */ { source, place, words }) {
+  const found = table.refused(source);
+  if (!found) return null;
+  const slips = found.spans.map(([from, to]) => (from === to ? slipWords(from) : `${slipWords(from)}${t` to `}${slipWords(to)}`)).join(", ");
+  const { draws, of, reason } = found.refusal;
+  const here = `${words.load(place.load)}, ${words.speed(place.speed)}`;
+  const why = t`${reasonWords(reason)} (at ${draws} of ${of} draws)`;
+  return found.isWhole
+    ? html`<p class="empty" role="status">${t`The model refuses every slip from ${slips} at ${here}: ${why}. Move the sliders, or choose another model.`}</p>`
+    : html`<p class="note" role="status">${t`The model refuses slip ${slips} at ${here}: ${why}.`}</p>`;
 }
 
 /** The grid of a wheel, asked once; it has no table until the answer for this wheel is there. */
