@@ -81,7 +81,6 @@ export const CALCULATOR = {
   "radius [m] of the rim with the soil that it carries along": "Radius [m] des Radkranzes mit dem Boden, den er mitnimmt",
   "resistive force theory of dry sand, with the grousers; seconds":
     "Theorie der Widerstandskräfte in trockenem Sand, mit den Stollen; Sekunden",
-  sd: "Standardabweichung",
   "slope that the pull balances": "Steigung, die die Zugkraft trägt",
   "speed of the rim": "Umfangsgeschwindigkeit",
   "stiffness of the sand [Pa/m]": "Steifigkeit des Sandes [Pa/m]",

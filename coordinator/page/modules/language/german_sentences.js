@@ -174,4 +174,6 @@ export const SENTENCES = {
     "{0} Rechner haben {1} Ergebnisse gerechnet; {2} wurden zweimal gerechnet und stimmten überein.",
   "{0}, the experiment of {1}: it describes wheel, soil and noise":
     "{0}, das Experiment von {1}: es beschreibt Rad, Boden und Rauschen",
+  "×/÷: the job has the decimal logarithm of the parameter; one sd is this factor.":
+    "×/÷: Der Job hat den dekadischen Logarithmus des Parameters; eine Standardabweichung ist dieser Faktor.",
 };

@@ -4,6 +4,7 @@ import { html, useState } from "../html.js";
 import { t } from "../language/language.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
+import { parameterValue, shownParameter } from "../words/parameter.js";
 import { capital, digits, minus, parameterName, probability, shown, words } from "../words/quantity.js";
 import { additionOf, TakeBack } from "./take_back.js";
 
@@ -70,8 +71,8 @@ const isAbsent = (/** @type {any} */ { parameters }) =>
 function strength(/** @type {string} */ name, /** @type {number} */ value, /** @type {string | undefined} */ stated) {
   const parameter = name.split(".").slice(1).join(".") || name;
   if (stated === undefined) return `${parameterName(parameter, null)} ${digits(value)} (SI)`;
-  const { unit, scale } = shown(stated);
-  return `${parameterName(parameter, stated)} ${digits(value * scale)}${unit === "1" ? "" : ` ${unit}`}`;
+  const called = { name: parameter, unit: stated };
+  return `${shownParameter(called).name} ${parameterValue(called, value)}`;
 }
 
 /** The others of a class. */
