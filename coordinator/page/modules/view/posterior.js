@@ -7,6 +7,7 @@ import { JointPicture, PairPlot } from "../chart/pairs.js";
 import { html, useState } from "../html.js";
 import { t } from "../language/language.js";
 import { Failure, Pending } from "../part/message.js";
+import { NoModel } from "../part/no_model.js";
 import { ParameterTable } from "../part/parameter_table.js";
 import { isReport } from "../rest/answers.js";
 import { get, path } from "../rest/routes.js";
@@ -20,7 +21,7 @@ const MOST = 6;
 /** @param {{ study: any, model: any }} properties */
 export function Posterior({ study, model }) {
   const { answer, error } = useAnswer(model && path.figures(model.id));
-  if (!model) return html`<p class="empty">The posterior is known as soon as a calibration has finished. The view Live shows how far it is.</p>`;
+  if (!model) return html`<${NoModel} study=${study} />`;
   const line = [...study.ledger, ...(study.point_estimates ?? [])].find((/** @type {any} */ l) => l.calibration === model.id);
   if (!answer) return html`<${Pending} answer=${answer} error=${error} what="The posterior" />`;
   const marginals = (answer.marginals ?? []).map((/** @type {any} */ m) => ({ ...m, ...m.parameter }));

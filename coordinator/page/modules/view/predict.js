@@ -4,6 +4,7 @@ import { PredictionChart } from "../chart/prediction_chart.js";
 import { html, useEffect, useMemo, useState } from "../html.js";
 import { t } from "../language/language.js";
 import { Failure, Pending } from "../part/message.js";
+import { NoModel } from "../part/no_model.js";
 import { Table } from "../part/table.js";
 import * as table from "../prediction_table.js";
 import { path, predict } from "../rest/routes.js";
@@ -25,7 +26,7 @@ const CONDITIONS = /** @type {const} */ (["slip", "load", "speed"]);
 /** @param {{ study: any, model: any }} properties */
 export function Predict({ study, model }) {
   const { answer: comparison, error } = useAnswer(model ? path.comparison(model.id) : null);
-  if (!model) return html`<p class="empty">No calibration of this study is finished yet.</p>`;
+  if (!model) return html`<${NoModel} study=${study} />`;
   if (!comparison) return html`<${Pending} answer=${comparison} error=${error} what="the measured runs" />`;
   const fitted = comparison.rows.filter((/** @type {any} */ row) => row.use === "fit");
   if (fitted.length === 0) return html`<p class="empty">No wheel run is fitted, so that nothing tells what a wheel would do.</p>`;

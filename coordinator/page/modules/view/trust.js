@@ -3,6 +3,7 @@
 import { html } from "../html.js";
 import { t } from "../language/language.js";
 import { Pending } from "../part/message.js";
+import { NoModel } from "../part/no_model.js";
 import { Table } from "../part/table.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
@@ -14,7 +15,7 @@ import { judgements } from "../words/trust.js";
 export function Trust({ study, model }) {
   const { answer: provenance, error } = useAnswer(model ? path.provenance(model.id) : null);
   const { answer: diagnostics } = useAnswer(model ? path.diagnostics(model.id) : null);
-  if (!model) return html`<p class="empty">No calibration of this study is finished yet.</p>`;
+  if (!model) return html`<${NoModel} study=${study} />`;
   if (!provenance) return html`<${Pending} answer=${provenance} error=${error} what="the account" />`;
   const line = study.ledger.find((/** @type {any} */ l) => l.calibration === model.id) ?? null;
   return html`
