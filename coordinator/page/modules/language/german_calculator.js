@@ -93,8 +93,6 @@ export const CALCULATOR = {
   "The model rejected {0} % of its parameter vectors.": "Das Modell hat {0} % der Parametervektoren abgelehnt.",
   "The program computes the curves …": "Das Programm rechnet die Kurven …",
   "The search that may follow is not in it.": "Die Suche, die folgen kann, ist nicht enthalten.",
-  "This model rolls over terrain: a prediction takes minutes.":
-    "Dieses Modell rollt über Gelände: eine Vorhersage dauert Minuten.",
   "tractive efficiency": "Zugwirkungsgrad",
   "What the calibrated models predict for a condition that nobody measured: mean and 90 % of new measurements (by the parameters alone where the noise is not known), over all models of the study by their evidence. Straight travel on level ground.":
     "Was die kalibrierten Modelle für eine Bedingung vorhersagen, die niemand gemessen hat: Mittel und 90 % neuer Messungen (nur nach den Parametern, wo das Rauschen nicht bekannt ist), über alle Modelle der Studie nach ihrer Evidenz. Geradeausfahrt auf ebenem Boden.",
@@ -105,4 +103,16 @@ export const CALCULATOR = {
   "Within the fitted range.": "Innerhalb des angepassten Bereichs.",
   "{0} (at {1} of {2} draws)": "{0} (bei {1} von {2} Ziehungen)",
   "{0} fitted runs with {1} measurements, {2} held out": "{0} angepasste Fahrten mit {1} Messungen, {2} zurückgehalten",
+  "A prediction of this model takes minutes: the page of the service makes it.":
+    "Eine Vorhersage dieses Modells dauert Minuten: Die Seite des Dienstes macht sie.",
+  "Interpolated between conditions that were computed with {0} draws.":
+    "Zwischen Bedingungen interpoliert, die mit {0} Ziehungen gerechnet sind.",
+  "the predictions": "die Vorhersagen",
+  "The model refuses this load or speed, or one beside it.": "Das Modell lehnt diese Last oder Geschwindigkeit ab, oder eine daneben.",
+  "This model takes minutes for a prediction.": "Dieses Modell braucht Minuten für eine Vorhersage.",
+  "This report has no predictions of this model.": "Dieser Bericht hat keine Vorhersagen dieses Modells.",
+  "A German Excel file": "Eine deutsche Excel-Datei",
+  "a table as a rig keeps it, in per cent, kN and mm with decimal commas: its import;":
+    "eine Tabelle, wie ein Prüfstand sie führt, in Prozent, kN und mm mit Dezimalkommas: ihr Import;",
+  "save the file": "die Datei speichern",
 };
