@@ -271,6 +271,8 @@ pub struct Progress {
     pub step_done: u64,
     /// Evaluations of the present step.
     pub step_size: u64,
+    /// The finished share of the calibration or search, from 0 to 0.99: a rough estimate from where its algorithm is.
+    pub share: f64,
     /// What a search is doing, and its leaders; `None` of other algorithms.
     pub search: Option<SearchProgress>,
     /// Evaluations per second, lately.

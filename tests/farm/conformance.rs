@@ -181,7 +181,7 @@ fn a_status_has_one_form() {
         "model_kind": "quasi_static", "model_version": "1",
         "progress": {"algorithm": "tmcmc",
                      "position": {"kind": "sampler", "stage": 4, "tempering_exponent": 0.25, "step": 2, "acceptance": 0.5},
-                     "evaluations": 1000, "rejected": 10, "step_done": 30, "step_size": 60, "search": null, "evaluations_per_s": 500.0, "remaining_s": null},
+                     "evaluations": 1000, "rejected": 10, "step_done": 30, "step_size": 60, "share": 0.5, "search": null, "evaluations_per_s": 500.0, "remaining_s": null},
     }));
     let position = status.progress.map(|progress| progress.position);
     assert!(

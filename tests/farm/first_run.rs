@@ -114,7 +114,7 @@ fn a_study_that_fails_says_why_and_what_to_do() {
     let refusal = run(coordinator(["run", &path, "--out", &out])).refusal();
     assert_contains!(
         refusal,
-        "calibration job failed: all 60 prior draws were rejected by the model (no_support ",
+        "calibration job failed: all 60 prior draws were rejected by the model: the soil does not carry the load (no_support, ",
         "the soil carries at most",
         "check wheel loads, radius and width"
     );

@@ -164,6 +164,55 @@ fn a_sweep_gives_a_curve_its_probabilities_and_the_slip_on_a_slope() {
 }
 
 #[test]
+fn the_grid_has_the_predictions_of_its_points() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = calibrated(folder.path());
+    let service = Service::start_on(&format!("sqlite://{out}/grouser.db"), &["--read-only"]);
+    let grid = service.client.json("/v1/calibrations/1/prediction-grid");
+    let axes = ["slips", "wheel_loads_n", "speeds_m_s"].map(|name| list(&grid[name]));
+    let points = list(&grid["wheels"][0]["points"]);
+    assert_eq!(points.len(), axes.map(Vec::len).iter().product::<usize>());
+    // A point in the middle, by slip, then load, then speed, as a plan of its own has it.
+    let [slips, loads, speeds] = axes;
+    let (slip, load, speed) = (float(&slips[4]), float(&loads[1]), float(&speeds[0]));
+    let sled = if grid["holds_rim"] == true {
+        speed * (1.0 - slip)
+    } else {
+        speed
+    };
+    let plan = format!("slip,wheel_load_n,sled_speed_m_s\n{slip},{load},{sled}\n");
+    let asked = json!({"plan": plan, "draws": float(&grid["draws"]) as u64});
+    let answer = service.client.post("/v1/calibrations/1/predict", &asked).json();
+    let one = &answer["runs"][0];
+    let point = &points[(4 * loads.len() + 1) * speeds.len()];
+    for (stated, value) in list(&grid["quantities"]).iter().zip(list(&point["values"])) {
+        let expected = quantity(one, word(&stated["name"]));
+        let interval = if stated["is_measurement"] == true {
+            "models_measurement"
+        } else {
+            "models"
+        };
+        let ends = [
+            &expected["models_mean"],
+            &expected[interval][0],
+            &expected[interval][1],
+        ];
+        for (i, end) in ends.into_iter().enumerate() {
+            let (found, end) = (float(&value[i]), float(end));
+            assert!((found - end).abs() <= 1e-5 * end.abs(), "{stated} {found} {end}");
+        }
+    }
+    // The report carries the same.
+    let report = service.client.get("/v1/calibrations/1/report").body;
+    assert_contains!(report, "/v1/calibrations/1/prediction-grid");
+    assert!(
+        grid.to_string().len() < 60_000,
+        "{} bytes",
+        grid.to_string().len()
+    );
+}
+
+#[test]
 fn what_cannot_be_predicted_says_why() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = calibrated(folder.path());

@@ -177,6 +177,20 @@ test("sliders predict what nobody measured, and say where the fitted runs end", 
   assert.ok(Math.abs((await shown()) - moved) < 1, `${moved} was interpolated, ${await shown()} is computed`);
 });
 
+test("a condition that the model refuses at every slip is said with its reason in the place of the curve", async () => {
+  const reason = "no_support: condition 3: the soil carries at most 80 N of the 140 N wheel load";
+  const refused = (/** @type {any} */ run) => ({ ...run, quantities: [], statements: [], refused: { draws: 40, of: 40, reason } });
+  await page.route("**/predict", async (route) => {
+    const answer = await (await route.fetch()).json();
+    await route.fulfill({ json: { ...answer, runs: answer.runs.map(refused) } });
+  });
+  await view(page, "Story");
+  await view(page, "Predict");
+  await page.getByText(/The model refuses every slip from 0 to 0\.\d+ at \S+ N, .*: the soil carries at most 80 N of the 140 N wheel load \(at 40 of 40 draws\)/).waitFor();
+  assert.equal(await page.locator(".view.predict [aria-busy]").count(), 0);
+  await page.unroute("**/predict");
+});
+
 test("runs of a region can be left out, as a study of its own", async () => {
   const id = studyOf(page);
   await view(page, "Compare");

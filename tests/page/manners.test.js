@@ -158,6 +158,23 @@ test("a view that is gone back to is where the reader left it", () => within({},
   await page.waitForFunction(() => Math.abs(scrollY - 500) < 3);
 }));
 
+test("parts that were opened are open in a view that is gone back to, and closed in a new one", () => within({}, async (page) => {
+  await go(page, "#/studies/1/compare");
+  await page.getByText("Table of all runs").click();
+  await page.locator("details[open] table").waitFor();
+  await page.waitForFunction(() => history.state?.open?.length === 1);
+  await page.getByRole("link", { name: "Where it fails", exact: true }).click();
+  await page.locator("section.view.failures figure .plot > svg").first().waitFor();
+  await page.goBack();
+  await page.locator("details[open] table").waitFor();
+  assert.equal(await page.locator("details[open]").count(), 1);
+  await page.getByRole("link", { name: "Story", exact: true }).click();
+  await page.locator("section.view.story h1, section.view.story h2").first().waitFor();
+  await page.getByRole("link", { name: "Compare", exact: true }).click();
+  await page.getByText("Table of all runs").waitFor();
+  assert.equal(await page.locator("details[open]").count(), 0);
+}));
+
 test("an address has the runs that are chosen and the effect whose curves are kept", () => within({}, async (page) => {
   await go(page, "#/studies/1/failures");
   const cell = page.locator('[data-figure$="residuals"] rect[data-run]').first();

@@ -34,7 +34,7 @@ for (const [theme, width] of [["light", 1280], ["dark", 400]]) {
     const { page } = tab;
     try {
       assert.equal(await page.locator("section").first().getAttribute("id"), "story");
-      for (const id of ["live", "compare", "failures", "posterior", "errors"]) {
+      for (const id of ["live", "compare", "failures", "posterior", "predict", "errors"]) {
         await page.locator(`section#${id} figure .plot svg`).first().waitFor({ state: "attached" });
       }
       assert.equal(await page.locator(".error").count(), 0, await page.locator(".error").first().textContent().catch(() => ""));
@@ -78,6 +78,39 @@ test("sliders of the parameters move the curves in the report, too", async () =>
   } finally {
     await tab.close();
   }
+});
+
+test("sliders of conditions move the prediction in the report, too, without asking anybody", async () => {
+  const tab = await opened(join(folder, "out", "report.html"), { width: 1280 });
+  const { page } = tab;
+  try {
+    const section = page.locator("section#predict");
+    const values = section.getByRole("region", { name: "Predictions at the chosen condition" });
+    const pull = async () => Number((await values.locator("tr", { hasText: "Drawbar pull" }).locator("td").first().textContent()).replace("−", "-"));
+    const [before, curve] = [await pull(), await section.locator("figure .plot svg").innerHTML()];
+    await section.getByText(/Interpolated between conditions that were computed with \d+ draws/).waitFor();
+    const began = await page.evaluate(() => performance.now());
+    await section.getByLabel("wheel load", { exact: true }).press("End");
+    await section.getByText("Beyond the fitted range in wheel load").waitFor();
+    assert.ok((await pull()) > before + 1, "the pull does not follow the load");
+    assert.notEqual(await section.locator("figure .plot svg").innerHTML(), curve);
+    assert.ok((await page.evaluate(() => performance.now())) - began < 5000);
+    assert.deepEqual(await findings(page), []);
+    assert.deepEqual(tab.requests.filter((url) => !/^(file|data|blob):/.test(url)), []);
+    assert.deepEqual(tab.faults, []);
+    await shot(page, "report-predict");
+  } finally {
+    await tab.close();
+  }
+});
+
+test("what sliders need takes at most 400 kB of the report", async () => {
+  const { readFile } = await import("node:fs/promises");
+  const text = await readFile(join(folder, "out", "report.html"), "utf8");
+  const answers = JSON.parse(/<script[^>]* id="answers"[^>]*>([^]*?)<\/script>/.exec(text)[1]);
+  const sliders = Object.entries(answers).filter(([path]) => /response-surface$|prediction-grid$/.test(path));
+  assert.ok(sliders.some(([path]) => path.endsWith("prediction-grid")));
+  assert.ok(sliders.reduce((sum, [, answer]) => sum + JSON.stringify(answer).length, 0) <= 400_000);
 });
 
 test("a model of the study has a report of its own", async () => {

@@ -36,8 +36,15 @@ for (const [theme, width] of [["light", 1280], ["dark", 400]]) {
       await page.goto(`${service.url}/#/studies/${study}/story`);
       const card = page.getByRole("alert").filter({ hasText: "The calibration failed" });
       await card.waitFor();
-      assert.match(await card.textContent(), /All 1000 prior draws were rejected by the model \(no_support.*What to do: Check wheel loads/s);
+      assert.match(await card.textContent(), /All 1000 prior draws were rejected by the model: the soil does not carry the load \(no_support.*What to do: Check wheel loads/s);
       assert.equal(await page.getByText("Nothing is finished yet").count(), 0);
+      // No other view lets people wait for what will not come.
+      for (const name of ["compare", "failures", "effects", "posterior", "predict", "errors", "trust"]) {
+        await page.goto(`${service.url}/#/studies/${study}/${name}`);
+        await page.locator(`section.view.${name}`).getByText("The calibration failed, so that there is nothing to show.").waitFor();
+      }
+      await page.getByRole("link", { name: "The story" }).click();
+      await card.waitFor();
       assert.deepEqual(await findings(page), []);
       assert.equal(await sideways(page), 0);
       await shot(page, `story-failed-${theme}`);

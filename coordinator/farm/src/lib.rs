@@ -14,7 +14,7 @@
 //! - `lease_numbers`: numbers of leases.
 //! - `share`: the division of leases among calibrations.
 //! - `seal`: the proof that a result belongs to its question.
-//! - `progress`: the speed of a calibration. `replay_cause`: why one in progress is replayed.
+//! - `progress`: the speed of a calibration. `finished_share`: how much of it is done. `replay_cause`: why one in progress is replayed.
 //! - `worker_record`, `metrics`: records of workers, and counters.
 
 pub mod calibration;
@@ -23,6 +23,7 @@ mod control;
 mod demand;
 pub mod dispatch;
 mod farm;
+mod finished_share;
 pub mod lease;
 mod lease_numbers;
 mod leasing;

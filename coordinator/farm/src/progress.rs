@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use shared::api::{CalibrationStatus, Progress};
 
 use crate::calibration::Calibration;
+use crate::finished_share::finished_share;
 
 /// The time over which the pace is averaged `[ms]`.
 const WINDOW_MS: u64 = 10_000;
@@ -67,6 +68,10 @@ pub(super) fn status(
     let identity = &calibration.identity;
     let queue = &calibration.queue;
     let per_second = pace.per_second(calibration.cost.simulations, now_ms);
+    let position = calibration.engine().position();
+    let evaluations = calibration.cost.evaluations;
+    let step_done = (queue.len() - queue.unleased() - queue.leased()) as u64;
+    let step_size = queue.len() as u64;
     CalibrationStatus {
         id: identity.id,
         name: identity.name.clone(),
@@ -83,11 +88,12 @@ pub(super) fn status(
         model_version: calibration.model_version.clone(),
         progress: Some(Progress {
             algorithm: calibration.spec.algorithm.name().to_owned(),
-            position: calibration.engine().position(),
-            evaluations: calibration.cost.evaluations,
+            position,
+            evaluations,
             rejected: calibration.cost.rejected,
-            step_done: (queue.len() - queue.unleased() - queue.leased()) as u64,
-            step_size: queue.len() as u64,
+            step_done,
+            step_size,
+            share: finished_share(position, evaluations, step_done, step_size),
             search: calibration.engine().search(),
             evaluations_per_s: per_second,
             remaining_s: remaining_s(calibration, per_second),

@@ -2,6 +2,7 @@
 
 import { html, render, useEffect, useState } from "./html.js";
 import { t } from "./language/language.js";
+import { arrive, keepLeftView } from "./left_view.js";
 import { Later } from "./part/later.js";
 import { Login } from "./part/login.js";
 import { Settings } from "./part/settings.js";
@@ -24,7 +25,7 @@ function Page() {
     document.getElementById("content")?.focus({ preventScroll: true });
     return arrive();
   }, [first, id, view]);
-  useEffect(keepPlace, []);
+  useEffect(keepLeftView, []);
   useEffect(() => {
     // A study names itself when it is known.
     if (!isStudy) document.title = `${first === "new" ? t`New calibration` : first === "beside" ? t`Two studies` : t`Studies`} – Grouser`;
@@ -49,39 +50,6 @@ function Page() {
       ${isBeside && html`<${Later} key=${route.place.join("/")} title="The comparison" load=${beside} ids=${route.place.slice(1).map(Number)} />`}
       ${!isStudy && !isBeside && !["new", undefined].includes(first) && html`<h1>There is no such page</h1><p><a href="#/">To the studies</a></p>`}
     </main>`;
-}
-
-/** So long a view that is gone back to may take to be as long as it was [ms]. */
-const GROW_MS = 3000;
-
-/** Keeps how far a view is scrolled with its entry in the history of the browser. */
-function keepPlace() {
-  /** @type {ReturnType<typeof setTimeout> | undefined} */
-  let timer;
-  const keep = () => {
-    clearTimeout(timer);
-    timer = setTimeout(() => history.replaceState({ top: scrollY }, ""), 150);
-  };
-  addEventListener("scroll", keep, { passive: true });
-  return () => removeEventListener("scroll", keep);
-}
-
-/** Goes to the top of a new view, and to where the reader was in one that is gone back to, as soon as it is that long. */
-function arrive() {
-  const top = history.state?.top ?? 0;
-  scrollTo(0, top);
-  if (top === 0) return undefined;
-  const content = /** @type {HTMLElement} */ (document.getElementById("content"));
-  const look = new ResizeObserver(() => {
-    scrollTo(0, top);
-    if (Math.abs(scrollY - top) < 2) look.disconnect();
-  });
-  look.observe(content);
-  const timer = setTimeout(() => look.disconnect(), GROW_MS);
-  return () => {
-    look.disconnect();
-    clearTimeout(timer);
-  };
 }
 
 /** Goes to the content without changing the address, which is that of a view. */

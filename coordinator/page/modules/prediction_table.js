@@ -1,4 +1,4 @@
-// Predictions on a grid of conditions, from which the page reads those between: slip by monotone cubics, load and speed by parabolas.
+// Predictions on a grid of conditions, from which page and report read those between: slip by monotone cubics, load and speed by parabolas.
 
 import { rimSpeed } from "./words/group.js";
 
@@ -7,47 +7,34 @@ import { rimSpeed } from "./words/group.js";
  * @typedef {{ wheel: string, slip: number, load: number, speed: number }} Place in SI; speed: of the rim or the sled, whichever the rig held
  * @typedef {{ mean: number, low: number, high: number, isMeasurement: boolean }} Spread low, high: 90 % of new measurements, or of what the
  *   parameters alone say where the noise is not known (isMeasurement: false)
- * @typedef {{ wheel: string, slips: number[], loads: number[], speeds: number[], at: (Map<string, Spread> | null)[] }} Table
- *   at: the quantities by slip, then load, then speed; null where the model refuses
+ * @typedef {{ draws: number, of: number, reason: string }} Refusal at how many of the draws the model refuses a condition, and why
+ * @typedef {{ wheel: string, slips: number[], loads: number[], speeds: number[], at: (Map<string, Spread> | null)[], refusals: (Refusal | null)[] }} Table
+ *   at: the quantities by slip, then load, then speed; null where the model refuses. refusals: in the same order
  */
 
-/** Slips of a curve. */
-const SLIPS = 11;
-/** A wheel goes no faster on its spot. */
-const MOST_SLIP = 0.95;
-/** How far beyond the fitted runs a slider reaches. */
-const BEYOND_SLIP = 0.2;
-const BEYOND = 1.3;
-/** Levels of a speed that differ by less are one. */
-const ONE_LEVEL = 0.02;
-
-const ends = (/** @type {number[]} */ values) => /** @type {[number, number]} */ ([Math.min(...values), Math.max(...values)]);
-
-/** The number of levels among values. */
-function levels(/** @type {number[]} */ values) {
-  const sorted = values.toSorted((a, b) => a - b);
-  return sorted.filter((value, k) => k === 0 || value > sorted[k - 1] * (1 + ONE_LEVEL)).length;
-}
-
-/** Whether the rig held the speed of the rim: then that of the sled falls with the slip. */
-export const holdsRim = (/** @type {any[]} */ runs) => levels(runs.map(rimSpeed)) < levels(runs.map((run) => run.sled_speed_m_s));
+/** @typedef {import("../types/api").components["schemas"]["PredictionGrid"]} Grid */
 
 /** The speed of the sled at a slip, from the speed that the rig held. */
 const sledSpeed = (/** @type {number} */ slip, /** @type {number} */ speed, /** @type {boolean} */ isRim) => (isRim ? (slip >= 0 ? speed * (1 - slip) : speed / (1 + slip)) : speed);
 
-/**
- * What the fitted runs span.
- * @param {any[]} runs with their conditions
- * @returns {Ranges}
- */
-export function fittedRanges(runs) {
-  const isRim = holdsRim(runs);
-  return { slip: ends(runs.map((run) => run.slip)), load: ends(runs.map((run) => run.wheel_load_n)), speed: ends(runs.map((run) => (isRim ? rimSpeed(run) : run.sled_speed_m_s))) };
+/** Ranges of a grid. @returns {Ranges} */
+export const rangesOf = (/** @type {Grid["reach"]} */ { slip, wheel_load_n: load, speed_m_s: speed }) => /** @type {Ranges} */ ({ slip, load, speed });
+
+/** The table of a wheel of a grid; null where the grid has none, because a prediction takes too long. @returns {Table | null} */
+export function tableOf(/** @type {Grid} */ grid, /** @type {string} */ wheel) {
+  const found = grid.wheels.find((one) => one.wheel === wheel);
+  if (!found) return null;
+  const { slips, wheel_loads_n: loads, speeds_m_s: speeds, quantities } = grid;
+  const spreadsOf = (/** @type {(number[] | null)[]} */ values) => new Map(quantities.flatMap(({ name, is_measurement: isMeasurement }, k) => {
+    const value = values[k];
+    return value ? [[name, { mean: value[0], low: value[1], high: value[2], isMeasurement }]] : [];
+  }));
+  const at = found.points.map(({ values }) => (values.some((value) => value !== null) ? spreadsOf(/** @type {any} */ (values)) : null));
+  return { wheel, slips, loads, speeds, at: /** @type {Table["at"]} */ (at), refusals: found.points.map(({ refused: one }) => one ?? null) };
 }
 
 /** A place to begin with: the load and the speed of the fitted run that is nearest to the middle of all, a third up the slips. */
-export function middle(/** @type {any[]} */ runs, /** @type {Ranges} */ { slip, load, speed }) {
-  const isRim = holdsRim(runs);
+export function middle(/** @type {any[]} */ runs, /** @type {Ranges} */ { slip, load, speed }, /** @type {boolean} */ isRim) {
   const speedOf = (/** @type {any} */ run) => (isRim ? rimSpeed(run) : run.sled_speed_m_s);
   const off = (/** @type {number} */ value, /** @type {[number, number]} */ [low, high]) => Math.abs(Math.log(value / Math.sqrt(low * high)));
   const far = (/** @type {any} */ run) => off(run.wheel_load_n, load) + off(speedOf(run), speed);
@@ -55,33 +42,13 @@ export function middle(/** @type {any[]} */ runs, /** @type {Ranges} */ { slip, 
   return { slip: Number((slip[0] + (slip[1] - slip[0]) / 3).toPrecision(2)), load: nearest.wheel_load_n, speed: speedOf(nearest) };
 }
 
-/** Where the sliders end: some way beyond the fitted runs. @returns {Ranges} */
-export function reach(/** @type {Ranges} */ { slip, load, speed }) {
-  const wider = (/** @type {[number, number]} */ [low, high]) => /** @type {[number, number]} */ ([low / BEYOND, high * BEYOND]);
-  return { slip: [Math.min(0, slip[0]), Math.min(MOST_SLIP, slip[1] + BEYOND_SLIP)], load: wider(load), speed: speed[1] > speed[0] * (1 + ONE_LEVEL) ? wider(speed) : speed };
-}
-
-/** The slips of a curve: closer where it bends, near 0. */
-function slipsOf(/** @type {[number, number]} */ [low, high]) {
-  return Array.from({ length: SLIPS }, (_, k) => low + (high - low) * (k / (SLIPS - 1)) ** 1.5);
-}
-
-const three = (/** @type {[number, number]} */ [low, high]) => (low === high ? [low] : [low, Math.sqrt(low * high), high]);
-
-/** The plan of a request, and the table that its answer fills. */
-function planOf(/** @type {string} */ wheel, /** @type {number[]} */ slips, /** @type {number[]} */ loads, /** @type {number[]} */ speeds, /** @type {boolean} */ isRim) {
-  const rows = slips.flatMap((slip) => loads.flatMap((load) => speeds.map((speed) => [wheel, slip, load, sledSpeed(slip, speed, isRim)])));
+/** The plan of the curve at a load and a speed over the slips of a grid, which has the slip itself, too; and the table that its answer fills. */
+export function curvePlan(/** @type {Place} */ { wheel, slip, load, speed }, /** @type {number[]} */ of, /** @type {boolean} */ isRim) {
+  const slips = [...new Set([...of, slip])].sort((a, b) => a - b);
+  const rows = slips.map((one) => [wheel, one, load, sledSpeed(one, speed, isRim)]);
   const plan = `${["wheel,slip,wheel_load_n,sled_speed_m_s", ...rows.map((row) => row.join(","))].join("\n")}\n`;
-  return { plan, fill: (/** @type {any[]} */ runs) => ({ wheel, slips, loads, speeds, at: spreads(runs) }) };
-}
-
-/** The plan of a grid over all conditions. */
-export const gridPlan = (/** @type {string} */ wheel, /** @type {Ranges} */ { slip, load, speed }, /** @type {boolean} */ isRim) => planOf(wheel, slipsOf(slip), three(load), three(speed), isRim);
-
-/** The plan of the curve at a load and a speed, which has the slip itself, too. */
-export function curvePlan(/** @type {Place} */ { wheel, slip, load, speed }, /** @type {Ranges} */ ranges, /** @type {boolean} */ isRim) {
-  const slips = [...new Set([...slipsOf(ranges.slip), slip])].sort((a, b) => a - b);
-  return { ...planOf(wheel, slips, [load], [speed], isRim), here: slips.indexOf(slip) };
+  const fill = (/** @type {any[]} */ runs) => ({ wheel, slips, loads: [load], speeds: [speed], at: spreads(runs), refusals: runs.map((run) => run.refused ?? null) });
+  return { plan, fill, here: slips.indexOf(slip) };
 }
 
 /**
@@ -117,6 +84,24 @@ export function curve({ slips, loads, speeds, at }, quantity, { load, speed }) {
     const of = (/** @type {"mean" | "low" | "high"} */ key) => through(loads, cells.map((row) => through(speeds, row.map((cell) => /** @type {Spread} */ (cell)[key]), speed)), load);
     return [{ slip, mean: of("mean"), low: of("low"), high: of("high"), isMeasurement: /** @type {Spread} */ (cells[0][0]).isMeasurement }];
   });
+}
+
+/**
+ * Where the model refuses so many draws that a curve has no value.
+ * @param {Table} table of one load and speed
+ * @returns {{ spans: [number, number][], isWhole: boolean, refusal: Refusal } | null} spans: of slips beside each other. isWhole: no slip is
+ *   left. refusal: that of the first. null where nothing is refused.
+ */
+export function refused({ slips, at, refusals }) {
+  /** @type {[number, number][]} */
+  const spans = [];
+  slips.forEach((slip, k) => {
+    if (at[k] !== null) return;
+    if (k > 0 && at[k - 1] === null) /** @type {[number, number]} */ (spans.at(-1))[1] = slip;
+    else spans.push([slip, slip]);
+  });
+  const refusal = refusals.find((one, k) => one !== null && at[k] === null);
+  return refusal ? { spans, isWhole: at.every((quantities) => quantities === null), refusal } : null;
 }
 
 /** The slopes of a monotone cubic through points (Steffen 1990), as the pictures draw it. */

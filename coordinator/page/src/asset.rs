@@ -21,6 +21,11 @@ struct Style;
 #[prefix = "vendor/"]
 struct Vendor;
 
+/// A table of measurements as people keep it, to try the import with.
+const TABLE: &str = "example/Messung_Sand.xlsx";
+/// Content of the table.
+const TABLE_CONTENT: &[u8] = include_bytes!("../../../examples/import-german/Messung_Sand.xlsx");
+
 fn file(path: &str) -> Option<rust_embed::EmbeddedFile> {
     Shell::get(path)
         .or_else(|| Modules::get(path))
@@ -46,6 +51,13 @@ pub const DOCS: &str = "docs.html";
 
 /// Returns a file by its path below the folder of the page; `None` if there is none.
 pub fn asset(path: &str) -> Option<Asset> {
+    if path == TABLE {
+        return Some(Asset {
+            content: Cow::Borrowed(TABLE_CONTENT),
+            media_type: "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
+            tag: format!("{}-{}", env!("CARGO_PKG_VERSION"), TABLE_CONTENT.len()),
+        });
+    }
     let file = file(path)?;
     let hash = file.metadata.sha256_hash();
     Some(Asset {
@@ -97,6 +109,13 @@ mod tests {
             assert_eq!(asset.tag.len(), 32);
         }
         assert!(asset("Cargo.toml").is_none() && asset("../Cargo.toml").is_none());
+    }
+
+    #[test]
+    fn the_table_to_import_is_there() {
+        let table = asset(TABLE).unwrap();
+        // A spreadsheet is a zip archive.
+        assert!(table.content.starts_with(b"PK") && table.media_type.ends_with("sheet"));
     }
 
     #[test]

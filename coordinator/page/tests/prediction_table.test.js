@@ -1,7 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { atSlip, beyond, curve, curvePlan, fittedRanges, gridPlan, holdsRim, reach } from "../modules/prediction_table.js";
+import { atSlip, beyond, curve, curvePlan, middle, rangesOf, refused, tableOf } from "../modules/prediction_table.js";
+import { reasonWords } from "../modules/words/refusal.js";
 
 const run = (slip, load, speed) => ({ slip, wheel_load_n: load, sled_speed_m_s: speed });
 /** Answers of a service whose quantity is a function of the condition. */
@@ -10,43 +11,52 @@ const answered = (plan, of) => plan.trim().split("\n").slice(1).map((line) => {
   const mean = of(slip, load, speed);
   return { quantities: [{ name: "q", models_mean: mean, models: [0, 0], models_measurement: [mean - 1, mean + 1] }] };
 });
+const SLIPS = [0, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7];
 const near = (a, b, within = 1e-9) => assert.ok(Math.abs(a - b) <= within, `${a} is not ${b}`);
 
-test("a rig that holds the rim has the same rim speed at every slip", () => {
-  const rim = [run(0.1, 90, 0.018), run(0.5, 90, 0.01), run(0.2, 90, 0.016)];
-  assert.equal(holdsRim(rim), true);
-  assert.equal(holdsRim([run(0.1, 90, 0.02), run(0.5, 90, 0.02)]), false);
-  const { speed } = fittedRanges(rim);
-  near(speed[0], 0.02);
-  near(speed[1], 0.02);
-});
+/** A grid as the service answers it, of a quantity that is a function of the condition. */
+const gridOf = (of) => {
+  const [slips, loads, speeds] = [[0, 0.1, 0.3, 0.7], [50, 90, 150], [0.01, 0.02, 0.04]];
+  const point = (slip, load, speed) => ({ refused: null, values: [[of(slip, load, speed), of(slip, load, speed) - 1, of(slip, load, speed) + 1], null] });
+  const points = slips.flatMap((slip) => loads.flatMap((load) => speeds.map((speed) => point(slip, load, speed))));
+  const quantities = [{ name: "q", unit: "N", is_measurement: true }, { name: "none", unit: "N", is_measurement: false }];
+  return { slips, wheel_loads_n: loads, speeds_m_s: speeds, quantities, wheels: [{ wheel: "w", points }], reach: { slip: [0, 0.7], wheel_load_n: [50, 150], speed_m_s: [0.01, 0.04] } };
+};
 
-test("the sliders reach beyond the fitted runs, and what lies there is named", () => {
-  const fitted = fittedRanges([run(0.1, 60, 0.02), run(0.5, 120, 0.02)]);
-  const wide = reach(fitted);
-  assert.ok(wide.slip[0] === 0 && wide.slip[1] === 0.7 && wide.load[0] < 60 && wide.load[1] > 120);
-  assert.deepEqual(wide.speed, [0.02, 0.02]);
+test("what lies beyond the fitted runs is named", () => {
+  const fitted = rangesOf({ slip: [0.1, 0.5], wheel_load_n: [60, 120], speed_m_s: [0.02, 0.02] });
   assert.deepEqual(beyond({ wheel: "w", slip: 0.5, load: 60, speed: 0.02 }, fitted), []);
   assert.deepEqual(beyond({ wheel: "w", slip: 0.6, load: 50, speed: 0.02 }, fitted), ["slip", "load"]);
 });
 
+test("the sliders begin at a load and a speed that were run", () => {
+  const fitted = rangesOf({ slip: [0.1, 0.5], wheel_load_n: [60, 120], speed_m_s: [0.02, 0.02] });
+  const rows = [run(0.1, 60, 0.018), run(0.5, 84, 0.01), run(0.5, 120, 0.01)];
+  assert.deepEqual(middle(rows, fitted, true), { slip: 0.23, load: 84, speed: 0.02 });
+});
+
 test("a grid gives its own values back, and parabolas of load and speed between them", () => {
-  const ranges = { slip: [0, 0.7], load: [50, 150], speed: [0.01, 0.04] };
-  const { plan, fill } = gridPlan("w", ranges, false);
   const of = (slip, load, speed) => slip * 10 + 0.001 * load * load - 100 * speed;
-  const table = fill(answered(plan, of));
+  const grid = gridOf(of);
+  const table = tableOf(grid, "w");
+  assert.equal(tableOf(grid, "v"), null);
   const points = curve(table, "q", { load: 83, speed: 0.017 });
-  for (const { slip, mean, low, high } of points) {
+  assert.equal(points.length, 4);
+  for (const { slip, mean, low, high, isMeasurement } of points) {
     near(mean, of(slip, 83, 0.017), 1e-9);
     near(high - low, 2);
+    assert.ok(isMeasurement);
   }
   near(atSlip(points, 0.33).mean, of(0.33, 83, 0.017), 1e-9);
   assert.equal(atSlip(points, 0.8), null);
+  // What is predicted nowhere has no curve, and what is refused at one corner has none at this slip.
+  assert.deepEqual(curve(table, "none", { load: 83, speed: 0.017 }), []);
+  grid.wheels[0].points[0] = { refused: { draws: 40, of: 40, reason: "no_support: x" }, values: [null, null] };
+  assert.equal(curve(tableOf(grid, "w"), "q", { load: 83, speed: 0.017 }).length, 3);
 });
 
 test("a curve is monotone between monotone points and goes through the slip that was asked for", () => {
-  const ranges = { slip: [0, 0.7], load: [90, 90], speed: [0.02, 0.02] };
-  const { plan, fill, here } = curvePlan({ wheel: "w", slip: 0.123, load: 90, speed: 0.02 }, ranges, true);
+  const { plan, fill, here } = curvePlan({ wheel: "w", slip: 0.123, load: 90, speed: 0.02 }, SLIPS, true);
   const of = (slip) => 20 * (1 - Math.exp(-slip / 0.05));
   const table = fill(answered(plan, of));
   assert.equal(table.slips[here], 0.123);
@@ -63,18 +73,16 @@ test("a curve is monotone between monotone points and goes through the slip that
 });
 
 test("a slip that the model refuses leaves a gap", () => {
-  const ranges = { slip: [0, 0.7], load: [90, 90], speed: [0.02, 0.02] };
-  const { plan, fill } = gridPlan("w", ranges, false);
+  const { plan, fill } = curvePlan({ wheel: "w", slip: 0.7, load: 90, speed: 0.02 }, SLIPS, false);
   const runs = answered(plan, (slip) => slip);
   runs[0] = { quantities: [] };
   const points = curve(fill(runs), "q", { load: 90, speed: 0.02 });
-  assert.equal(points.length, 10);
+  assert.equal(points.length, SLIPS.length - 1);
   assert.equal(atSlip(points, 0), null);
 });
 
 test("an interval says whether it is that of new measurements, and a curve has one kind", () => {
-  const ranges = { slip: [0, 0.7], load: [50, 150], speed: [0.02, 0.02] };
-  const { plan, fill } = gridPlan("w", ranges, false);
+  const { plan, fill } = curvePlan({ wheel: "w", slip: 0.7, load: 90, speed: 0.02 }, SLIPS, false);
   const runs = answered(plan, (slip) => slip);
   const place = { load: 90, speed: 0.02 };
   assert.ok(curve(fill(runs), "q", place).every(({ isMeasurement }) => isMeasurement));
@@ -86,4 +94,22 @@ test("an interval says whether it is that of new measurements, and a curve has o
   const other = curve(fill(runs.map((run) => quantity(run, { models_measurement: null }))), "other", place);
   assert.equal(atSlip(other, 0.3).isMeasurement, true);
   near(atSlip(other, 0.3).high - atSlip(other, 0.3).low, 2);
+});
+
+test("slips that the model refuses are named with its reason, and a curve that has none left is known", () => {
+  const { plan, fill } = curvePlan({ wheel: "w", slip: 0.7, load: 90, speed: 0.02 }, SLIPS, false);
+  const refusal = { draws: 40, of: 40, reason: "no_support: condition 3: the soil carries at most 80 N of the 90 N wheel load" };
+  const runs = answered(plan, (slip) => slip);
+  const table = fill(runs);
+  assert.equal(refused(table), null);
+  const some = fill(runs.map((run, k) => (k < 2 || k === 5 ? { quantities: [], refused: refusal } : run)));
+  const { spans, isWhole, refusal: found } = refused(some);
+  assert.deepEqual(spans, [[some.slips[0], some.slips[1]], [some.slips[5], some.slips[5]]]);
+  assert.ok(!isWhole && found === refusal);
+  assert.equal(curve(some, "q", { load: 90, speed: 0.02 }).length, some.slips.length - 3);
+  assert.equal(reasonWords(refusal.reason), "the soil carries at most 80 N of the 90 N wheel load");
+  const all = refused(fill(runs.map(() => ({ quantities: [], refused: refusal }))));
+  assert.ok(all.isWhole && all.spans.length === 1);
+  // A condition that is refused at few draws is predicted by the others.
+  assert.equal(refused(fill(runs.map((run) => ({ ...run, refused: { ...refusal, draws: 1 } })))), null);
 });

@@ -5,7 +5,8 @@ import { table } from "../modules/chart/download.js";
 import { groups } from "../modules/words/group.js";
 import { levels, levelWords } from "../modules/words/level.js";
 import { measuredQuantities, statementOf } from "../modules/words/predicted_quantity.js";
-import { digits, duration, meanAndSd, numberOf, parameterName, probability, shown, size, tickWords, titled, withSd } from "../modules/words/quantity.js";
+import { meanAndSpread, parameterTitle, parameterValue, parameterValues, shownParameter } from "../modules/words/parameter.js";
+import { digits, duration, meanAndSd, numberOf, parameterName, probability, shown, size, tickWords, withSd } from "../modules/words/quantity.js";
 import { meanErrorSd, residualSds } from "../modules/words/residual.js";
 import { progressWords } from "../modules/words/state.js";
 
@@ -114,17 +115,27 @@ test("a table as CSV quotes what needs it", () => {
 });
 
 test("a parameter is shown in the unit that the service states, which its name need not repeat", () => {
-  const label = (/** @type {string} */ name, /** @type {string} */ unit) => titled(parameterName(name, unit), shown(unit).unit);
+  const label = (/** @type {string} */ name, /** @type {string} */ unit) => parameterTitle({ name, unit });
   assert.equal(label("xi_n_pa_m", "Pa/m"), "xi n [Pa/m]");
   assert.equal(shown("Pa/m").scale, 1);
   assert.equal(label("wheel_radius_m.smooth", "m"), "wheel radius: smooth [mm]");
   assert.equal(label("friction_angle_deg", "deg"), "friction angle [°]");
   assert.equal(label("sled_drag.drag_n_s_m", "N s/m"), "sled drag: drag [N s/m]");
   assert.equal(label("moisture.rate_per_m.grousered", "1/m"), "moisture: rate: grousered [1/m]");
-  assert.equal(label("log10_p_ref", "log10 Pa"), "log10 p ref [log10 Pa]");
+  // People read a pressure, not its logarithm.
+  assert.equal(label("log10_p_ref", "log10 Pa"), "p ref [kPa]");
   assert.equal(label("n", "1"), "n");
   // No unit is guessed from a name.
   assert.equal(parameterName("wheel_radius_m", null), "wheel radius m");
+});
+
+test("a logarithm is shown as its quantity, with a factor for its sd", () => {
+  const pressure = shownParameter({ name: "log10_p_ref", unit: "log10 Pa" });
+  assert.equal(meanAndSpread(pressure, 4.66, 0.023), "45.7 ×/÷ 1.05");
+  assert.equal(meanAndSpread(pressure, 4.8, 0.46), "63.1 ×/÷ 2.88");
+  assert.deepEqual(parameterValues(pressure, [4.6195, 4.6974, null], 4.66, 0.023), ["41.6", "49.8", "–"]);
+  assert.equal(parameterValue({ name: "log10_p_ref", unit: "log10 Pa" }, 4.66), "45.7 kPa");
+  assert.equal(meanAndSpread(shownParameter({ name: "wheel_radius_m", unit: "m" }), 0.1384, 0.0012), "138.4 ± 1.2");
 });
 
 test("residuals count in all errors that are assumed, as their band does", () => {

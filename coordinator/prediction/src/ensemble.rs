@@ -216,6 +216,12 @@ impl Ensemble {
         })
     }
 
+    /// Returns whether every model is in steady motion, so that a simulation takes less than a millisecond.
+    pub fn is_fast(&self) -> bool {
+        let mut kinds = self.models.iter().map(|model| model.calibration.spec.model.kind);
+        kinds.all(|kind| limit(kind) == MAX_STEADY)
+    }
+
     /// Returns the largest number of draws of each model at which a number of runs may be simulated in a request.
     ///
     /// # Errors

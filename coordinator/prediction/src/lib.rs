@@ -9,7 +9,7 @@
 //! - [`balance`]: the slip at which a wheel climbs a slope.
 //! - [`drawn_model`](mod@drawn_model): the model with its draws, for programs that simulate it themselves.
 //! - [`follow`]: what further runs change. [`surprise`]: runs that contradict what was expected of them.
-//! - [`prediction`]: predictions of a plan. [`decision`]: expected losses of options, and what one more run is worth.
+//! - [`prediction`]: predictions of a plan. [`grid`]: predictions over a grid of conditions. [`decision`]: expected losses of options, and what one more run is worth.
 
 pub mod balance;
 pub mod beyond;
@@ -19,6 +19,7 @@ pub mod drawn_model;
 pub mod ensemble;
 pub mod error;
 pub mod follow;
+pub mod grid;
 pub mod plan;
 pub mod prediction;
 pub mod quantity_value;
@@ -30,6 +31,7 @@ pub use decision::DecisionAnswer;
 pub use drawn_model::drawn_model;
 pub use ensemble::{Answers, Ensemble, ModelWeight, Question, RunAnswers, Simulated};
 pub use error::PredictionError;
+pub use grid::{PredictionGrid, prediction_grid};
 pub use plan::{Sweep, planned_runs};
 pub use prediction::Prediction;
 pub use statement::read_statements;

@@ -12,24 +12,28 @@ use crate::diagnosis::diagnostics;
 use crate::overview::overview;
 use crate::provenance::provenance;
 use crate::terminal;
+use prediction::PredictionGrid;
 use result::finished_calibration::FinishedCalibration;
 use result::response_surface::{MAX_BYTES, ResponseSurface};
 use result::study::Study;
 
 /// Returns the report, which shows the current model first.
-pub fn document(study: &Study) -> String {
+///
+/// # Arguments
+/// - `grids`: predictions over grids, which the caller simulates.
+pub fn document(study: &Study, grids: &[PredictionGrid]) -> String {
     let shown = study.current().unwrap_or(&study.lead);
     report(&Report {
         title: &format!("Calibration report: {}", study.lead.experiment),
         text: &terminal::study(study),
         study: shown.row.study,
         calibration: shown.row.id,
-        answers: &answers(study),
+        answers: &answers(study, grids),
     })
 }
 
 /// Returns the answers of a service about a study, keyed by path.
-pub fn answers(study: &Study) -> Map<String, Value> {
+pub fn answers(study: &Study, grids: &[PredictionGrid]) -> Map<String, Value> {
     let overview = overview(study);
     let mut answers = Map::new();
     let mut add = |path: String, answer: Value| {
@@ -46,6 +50,12 @@ pub fn answers(study: &Study) -> Map<String, Value> {
         add(path("histories"), json(&calibration.histories()));
         add(path("provenance"), json(&provenance(calibration)));
         add(path("stages"), json(&calibration.stages()));
+    }
+    for grid in grids {
+        add(
+            format!("calibrations/{}/prediction-grid", grid.calibration),
+            json(grid),
+        );
     }
     for (calibration, surface) in surfaces(study) {
         add(
@@ -99,7 +109,7 @@ mod tests {
     #[test]
     fn every_calibration_and_every_search_is_in_the_report() {
         let study = fixture::grown();
-        let answers = answers(&study);
+        let answers = answers(&study, &[]);
         let count = |what: &str| answers.keys().filter(|path| path.ends_with(what)).count();
         assert_eq!(count("/discovery"), study.rounds.len());
         assert_eq!(count("/comparison"), study.calibrations().count());
@@ -115,7 +125,7 @@ mod tests {
             other_models: vec![other],
             ..Study::from(fixture::calibration())
         };
-        let answers = answers(&study);
+        let answers = answers(&study, &[]);
         let models = &answers[&format!("/v1/studies/{}", study.lead.row.study)]["models"];
         assert_eq!(models["best"], study.lead.row.id);
         assert_eq!(models["models"].as_array().map(Vec::len), Some(2));
@@ -130,14 +140,14 @@ mod tests {
 
     #[test]
     fn names_of_users_are_escaped() {
-        let document = document(&fixture::study());
+        let document = document(&fixture::study(), &[]);
         assert!(document.contains("\\u003cscript>") && document.contains("&lt;script&gt;"));
         assert!(!document.contains("<script>alert"));
     }
 
     #[test]
     fn equal_studies_give_equal_reports() {
-        assert_eq!(document(&fixture::study()), document(&fixture::study()));
+        assert_eq!(document(&fixture::study(), &[]), document(&fixture::study(), &[]));
     }
 
     #[test]
@@ -148,7 +158,7 @@ mod tests {
             fixture::fit(),
             fixture::search(),
         ] {
-            let document = document(&Study::from(calibration));
+            let document = document(&Study::from(calibration), &[]);
             assert!(document.ends_with("</html>\n"));
         }
     }

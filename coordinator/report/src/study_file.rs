@@ -9,6 +9,7 @@ use crate::provenance::provenance;
 use crate::story::Story;
 use crate::summary::study::summary;
 use crate::terminal;
+use prediction::PredictionGrid;
 use result::finished_calibration::FinishedCalibration;
 use result::study::Study;
 use result::table::prediction::to_csv;
@@ -60,7 +61,10 @@ impl StudyFile {
 
     /// Returns whether every study ends with the file. The others are computed on request.
     pub fn is_of_every_study(self) -> bool {
-        !matches!(self, StudyFile::PredictionRows | StudyFile::Figures(_))
+        !matches!(
+            self,
+            StudyFile::PredictionRows | StudyFile::Report | StudyFile::Figures(_)
+        )
     }
 }
 
@@ -106,13 +110,13 @@ impl CalibrationFile {
 
 /// Returns the files that every study ends with, by name, and diagnostics and provenance of its calibrations.
 pub fn files(study: &Study) -> BTreeMap<String, String> {
-    use StudyFile::{Brief, Details, Posterior, Predictions, Report, Story, Summary};
+    use StudyFile::{Brief, Details, Posterior, Predictions, Story, Summary};
     let mut files = overview_files(&overview(study));
-    let of_study = [Summary, Posterior, Predictions, Report, Details, Brief, Story];
+    let of_study = [Summary, Posterior, Predictions, Details, Brief, Story];
     files.extend(
         of_study
             .into_iter()
-            .filter_map(|kind| Some((kind.name(), file(study, kind)?))),
+            .filter_map(|kind| Some((kind.name(), file(study, &[], kind)?))),
     );
     let of_calibrations = [CalibrationFile::Diagnostics, CalibrationFile::Provenance];
     files.extend(study.calibrations().flat_map(|calibration| {
@@ -130,14 +134,22 @@ pub fn overview_files(overview: &StudyOverview) -> BTreeMap<String, String> {
     .into()
 }
 
+/// Returns the name of the file with the predictions of a calibration over a grid.
+pub fn grid_name(calibration: i64) -> String {
+    format!("prediction-grid-{calibration}.json")
+}
+
 /// Returns the text of a file; `None` for figures of a calibration that is not a finished one of the study.
-pub fn file(study: &Study, file: StudyFile) -> Option<String> {
+///
+/// # Arguments
+/// - `grids`: predictions over grids, which a report carries.
+pub fn file(study: &Study, grids: &[PredictionGrid], file: StudyFile) -> Option<String> {
     Some(match file {
         StudyFile::Summary => json(&summary(study)) + "\n",
         StudyFile::Posterior => study.current().unwrap_or(&study.lead).posterior_table().to_csv(),
         StudyFile::Predictions => to_csv(&study.predictions()),
         StudyFile::PredictionRows => compact(&study.predictions()),
-        StudyFile::Report => document(study),
+        StudyFile::Report => document(study, grids),
         StudyFile::Details => terminal::study(study),
         StudyFile::Brief => terminal::brief(study),
         StudyFile::Story => json(&Story::current(study)) + "\n",

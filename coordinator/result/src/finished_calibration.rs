@@ -13,7 +13,7 @@ use crate::table::comparison::Comparison;
 use crate::table::interpolation::Interpolations;
 
 /// The kind of result that a calibration ends with.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub enum Outcome {
     /// A sample of the posterior.
     Sampled(SampledPosterior),
@@ -29,7 +29,7 @@ pub enum Outcome {
 }
 
 /// A sample of the posterior with the history of the sampler.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct SampledPosterior {
     /// The equally weighted draws.
     pub draws: Vec<Particle>,
@@ -60,7 +60,7 @@ impl Outcome {
 }
 
 /// A finished calibration.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct FinishedCalibration {
     /// Row of the calibration in the store.
     pub row: CalibrationRow,

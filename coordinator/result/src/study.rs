@@ -10,7 +10,7 @@ use crate::study_member::StudyMember;
 use crate::table::combined_row::CombinedRow;
 
 /// The finished calibrations of a study, oldest first. There is at least one.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Study {
     /// State of the study: finished if no further step follows, else the state of its first unfinished calibration.
     pub state: CalibrationState,

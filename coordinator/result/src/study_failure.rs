@@ -24,7 +24,7 @@ impl StudyFailure {
         let message = failed.message.as_deref().unwrap_or("no reason is stored");
         let rejections = failed.rejections.as_ref();
         let reason = match rejections.and_then(Rejections::words) {
-            Some(words) => format!("{message} ({words})"),
+            Some(words) => format!("{message}: {words}"),
             None => message.to_owned(),
         };
         let advice = advice(rejections.and_then(Rejections::usual));
@@ -94,7 +94,7 @@ mod tests {
         let failure = StudyFailure::from_members([&failed].into_iter()).unwrap();
         assert_eq!(
             failure.reason,
-            "all 1000 prior draws were rejected by the model (no_support 990 and not_finite 10, such as \"the soil carries at most 80 N of the 140 N wheel load\")"
+            "all 1000 prior draws were rejected by the model: the soil does not carry the load (no_support, 990) and a value is not finite (not_finite, 10), such as \"the soil carries at most 80 N of the 140 N wheel load\""
         );
         assert!(failure.advice.starts_with("check wheel loads"), "{failure:?}");
         assert!(

@@ -6,6 +6,7 @@ use record::Role;
 use shared::api::CalibrationState;
 
 use crate::words::number;
+use crate::words::rejection::rejection_counts;
 
 /// A calibration or a search of a study.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -46,10 +47,10 @@ impl Rejections {
             .map(|(kind, _)| kind.as_str())
     }
 
-    /// Counts the rejections by kind with an example: `no_support 1000, such as "the soil carries at most 80 N of the 140 N wheel load"`;
-    /// `None` without rejections.
+    /// Counts the rejections by kind with an example, such as `the soil does not carry the load (no_support, 1000), such as "the soil
+    /// carries at most 80 N of the 140 N wheel load"`; `None` without rejections.
     pub fn words(&self) -> Option<String> {
-        let kinds = number::counts(&self.kinds);
+        let kinds = rejection_counts(&self.kinds);
         let first = self.first.as_ref().map(|first| format!(", such as \"{first}\""));
         (!kinds.is_empty()).then(|| format!("{}{}", number::list(&kinds), first.unwrap_or_default()))
     }

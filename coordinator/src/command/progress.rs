@@ -8,19 +8,9 @@ use shared::api::{CalibrationState, CalibrationStatus, Position, Progress};
 
 use super::output::note;
 
-/// Natural logarithm of the first tempering exponent of a usual calibration, about 1e-5. It rises to 0 over the stages.
-const FIRST_LN_EXPONENT: f64 = -11.5;
-/// The share of a calibration's work until the exponent is 1.
-const CLIMB: f64 = 0.9;
-/// The number of evaluations of a usual search.
-const SEARCH: f64 = 2000.0;
-/// The number of steps of a usual fit.
-const FIT_STEPS: f64 = 8.0;
-/// The number of generations of a usual evolution.
-const GENERATIONS: f64 = 100.0;
 /// The smallest finished share from which the remaining time is estimated.
 const MIN_SHARE: f64 = 0.03;
-/// The largest share that the display shows, because the end is not certain.
+/// The largest share that the display shows of a study, because the number of its members is a guess.
 const MAX_SHARE: f64 = 0.99;
 
 /// The finished share of a study, from 0 to 1. Its members are equal parts, and the present one counts by its finished share. The share never
@@ -35,27 +25,9 @@ impl StudyShare {
     /// - `over`: the number of finished members. `expected`: the least number of members in the end.
     fn advance(&mut self, over: usize, expected: usize, present: &Progress) -> f64 {
         let parts = expected.max(over + 1) as f64;
-        let now = (over as f64 + share_of(present)) / parts;
+        let now = (over as f64 + present.share) / parts;
         self.0 = now.min(MAX_SHARE).max(self.0);
         self.0
-    }
-}
-
-/// Returns the finished share of a calibration or a search, from 0 to 1.
-fn share_of(p: &Progress) -> f64 {
-    let settling = |done: f64, usual: f64| 1.0 - libm::exp(-done / usual);
-    match p.position {
-        Position::Fit { steps } => settling(f64::from(steps), FIT_STEPS),
-        Position::Evolution { generations } => settling(f64::from(generations), GENERATIONS),
-        Position::Search { .. } => settling(p.evaluations as f64, SEARCH),
-        Position::Sampler {
-            tempering_exponent, ..
-        } if tempering_exponent >= 1.0 => {
-            CLIMB + (1.0 - CLIMB) * p.step_done as f64 / p.step_size.max(1) as f64
-        }
-        Position::Sampler {
-            tempering_exponent, ..
-        } => CLIMB * (1.0 - libm::log(tempering_exponent) / FIRST_LN_EXPONENT).clamp(0.0, 1.0),
     }
 }
 
@@ -202,11 +174,12 @@ mod tests {
         }
     }
 
-    fn progress(position: Position, evaluations: u64) -> Progress {
+    fn progress(position: Position, share: f64) -> Progress {
         Progress {
             algorithm: String::new(),
             position,
-            evaluations,
+            share,
+            evaluations: 1000,
             rejected: 0,
             step_done: 0,
             step_size: 1000,
@@ -220,38 +193,17 @@ mod tests {
     fn the_share_of_a_study_never_falls_and_never_reaches_the_whole() {
         let mut share = StudyShare::default();
         let mut shown = Vec::new();
-        // The study turns out to have more members than expected, and has stages whose progress starts again with each step.
+        // The study turns out to have more members than expected, and the share of a member begins again with each.
         for over in 0..6 {
-            for (stage, exponent) in [(0, 0.0), (1, 1e-6), (2, 1e-3), (3, 0.2), (4, 1.0)] {
-                for step_done in [0, 500, 1000, 10] {
-                    let p = Progress {
-                        step_done,
-                        ..progress(sampler(stage, exponent), 1000)
-                    };
-                    shown.push(share.advance(over, 4, &p));
-                }
+            for (stage, part) in [(0, 0.0), (1, 0.1), (2, 0.4), (3, 0.3), (4, 0.99)] {
+                shown.push(share.advance(over, 4, &progress(sampler(stage, 0.5), part)));
             }
-            let search = progress(Position::Search { rounds: 1 }, 1000);
+            let search = progress(Position::Search { rounds: 1 }, 0.4);
             shown.push(share.advance(over, 4, &search));
         }
         assert!(shown.windows(2).all(|pair| pair[0] <= pair[1]), "{shown:?}");
         assert!(shown.iter().all(|s| (0.0..=MAX_SHARE).contains(s)), "{shown:?}");
         assert!(shown[0] < 0.01 && *shown.last().unwrap() > 0.8, "{shown:?}");
-    }
-
-    #[test]
-    fn every_algorithm_moves_its_share() {
-        let pairs = [
-            [sampler(1, 1e-4), sampler(9, 0.5)],
-            [1, 9].map(|steps| Position::Fit { steps }),
-            [1, 9].map(|generations| Position::Evolution { generations }),
-            [1, 9].map(|rounds| Position::Search { rounds }),
-        ];
-        for [early, late] in pairs {
-            let [early_share, late_share] =
-                [(early, 1000), (late, 9000)].map(|(position, n)| share_of(&progress(position, n)));
-            assert!(early_share < late_share && late_share < 1.0, "{late:?}");
-        }
     }
 
     #[test]

@@ -351,7 +351,7 @@ async fn predictions(State(service): State<Service>, Id(id): Id) -> Result<impl 
 }
 
 /// Returns a text that is JSON already.
-fn json(text: String) -> impl IntoResponse {
+pub(super) fn json(text: String) -> impl IntoResponse {
     ([(header::CONTENT_TYPE, "application/json")], text)
 }
 

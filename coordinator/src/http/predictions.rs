@@ -2,14 +2,16 @@
 
 use axum::Json;
 use axum::extract::State;
+use axum::response::IntoResponse;
 use job::PlannedCondition;
 use prediction::follow::Followed;
-use prediction::{DecisionAnswer, Prediction, drawn_model};
+use prediction::{DecisionAnswer, Prediction, PredictionGrid, drawn_model};
 use shared::api::{ErrorBody, NewDecision, NewPrediction, NewRuns};
 use shared::model::DrawnModel;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
+use super::calibrations::json;
 use super::error::{Body, HttpError, Id, Query};
 use crate::service::Service;
 use crate::service::ServiceError;
@@ -17,6 +19,7 @@ use crate::service::ServiceError;
 pub(super) fn routes() -> OpenApiRouter<Service> {
     OpenApiRouter::new()
         .routes(routes!(predict))
+        .routes(routes!(grid))
         .routes(routes!(decide))
         .routes(routes!(drawn))
         .routes(routes!(follow))
@@ -40,6 +43,21 @@ async fn predict(
     Body(asked): Body<NewPrediction>,
 ) -> Result<Json<Prediction>, HttpError> {
     Ok(Json(service.predict(id, asked).await?))
+}
+
+/// The predictions over a grid of conditions.
+///
+/// What sliders move through: eleven slips, and three loads and speeds, as far as the fitted runs reach and some way beyond, with mean and 90 %
+/// interval of every quantity by 40 draws of each model. It is kept. A model that rolls over terrain, or is not ours, has the axes alone.
+#[utoipa::path(get, path = "/calibrations/{id}/prediction-grid", operation_id = "get_prediction_grid", tag = "results",
+    params(("id" = i64, Path, description = "id of a calibration with a posterior")), responses(
+    (status = 200, description = "the grid", body = PredictionGrid),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody, description = "the calibration is not finished, has no draws, or its model cannot be evaluated here"),
+    (status = 422, body = ErrorBody, description = "no wheel run is fitted"),
+))]
+async fn grid(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
+    Ok(json(service.prediction_grid(id).await?))
 }
 
 /// Compares the options of a decision.

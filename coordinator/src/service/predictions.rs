@@ -14,7 +14,8 @@ use job::{ConditionDefaults, read_decision};
 use prediction::decision::{decide, decision_runs};
 use prediction::prediction::predict;
 use prediction::{
-    DecisionAnswer, Ensemble, Prediction, PredictionError, Sweep, planned_runs, read_statements,
+    DecisionAnswer, Ensemble, Prediction, PredictionError, PredictionGrid, Sweep, planned_runs,
+    prediction_grid, read_statements,
 };
 use result::Study;
 
@@ -33,6 +34,19 @@ impl Service {
     /// [`ServiceError`]: the calibration has no posterior, or the plan is malformed.
     pub async fn predict(&self, id: i64, asked: NewPrediction) -> Result<Prediction, ServiceError> {
         self.alone(id, move |study| predicted(study, id, &asked)).await
+    }
+
+    /// Computes the predictions of a calibration over a grid of conditions, as JSON.
+    ///
+    /// # Errors
+    /// The same as of [`Service::predict`].
+    pub(super) async fn computed_grid(&self, id: i64) -> Result<String, ServiceError> {
+        let grid = self
+            .alone(id, move |study| {
+                prediction_grid(study, id, |question| simulate(&question))
+            })
+            .await?;
+        Ok(serde_json::to_string(&grid).expect("results have a JSON form"))
     }
 
     /// Compares the options of a decision by their expected losses.
@@ -72,6 +86,15 @@ impl Service {
         });
         Ok(computed.await.map_err(ServiceError::not_ended)??)
     }
+}
+
+/// Returns the predictions of the current model of a study over a grid; nothing where there are none, as of plates or of a fit.
+pub(super) fn current_grid(study: &Study) -> Vec<PredictionGrid> {
+    let Some(current) = study.current() else {
+        return Vec::new();
+    };
+    let grid = prediction_grid(study.clone(), current.row.id, |question| simulate(&question));
+    grid.ok().into_iter().collect()
 }
 
 fn predicted(study: Study, id: i64, asked: &NewPrediction) -> Result<Prediction, PredictionError> {

@@ -9,8 +9,9 @@ use shared::api::CalibrationState;
 use super::error::ServiceError;
 use super::finished_study::{check_finished, finished_calibration, finished_study};
 use super::handle::Service;
+use super::predictions::current_grid;
 use record::CalibrationRow;
-use report::study_file::{files, overview_files};
+use report::study_file::{files, grid_name, overview_files};
 use report::{CalibrationFile, StudyFile, StudyOverview};
 use result::FinishedCalibration;
 use store::{Stamp, StoreError, StudyResults};
@@ -89,11 +90,17 @@ impl Service {
         // The next step of a study is unfinished work, although it has not begun: the study is about to grow.
         let is_over = are_over(rows) && study.state.is_final();
         let is_of_list = matches!(file, StudyFile::Overview | StudyFile::ListItem);
+        let is_whole = is_over && file.is_of_every_study() && !self.store().is_read_only();
+        // A report has a megabyte of modules, so that it is computed where somebody asks for it.
+        let grids = match file {
+            StudyFile::Report => current_grid(&study),
+            _ => Vec::new(),
+        };
         let computed = match () {
-            () if is_over && file.is_of_every_study() && !self.store().is_read_only() => files(&study),
+            () if is_whole => files(&study),
             () if is_of_list => overview_files(&report::overview::overview(&study)),
             () => {
-                let text = report::study_file::file(&study, file);
+                let text = report::study_file::file(&study, &grids, file);
                 let text = text.ok_or_else(|| ServiceError::not_found("result of calibration", row.id))?;
                 [(name.clone(), text)].into()
             }
@@ -112,6 +119,24 @@ impl Service {
         stamp: Stamp,
     ) -> Result<(), ServiceError> {
         self.keep(overview.id, stamp, overview_files(overview)).await
+    }
+
+    /// Returns the predictions of a finished calibration over a grid of conditions, as JSON.
+    ///
+    /// # Errors
+    /// The same as of [`Service::predict`].
+    pub async fn prediction_grid(&self, id: i64) -> Result<String, ServiceError> {
+        let row = self.calibration_row(id).await?;
+        let (stamp, rows) = self.stamped_members(row.study).await?;
+        let name = grid_name(id);
+        if let Some(text) = self.results.text(row.study, &name, &stamp).await? {
+            return Ok(text);
+        }
+        let text = self.computed_grid(id).await?;
+        if are_over(&rows) {
+            self.keep(row.study, stamp, [(name, text.clone())].into()).await?;
+        }
+        Ok(text)
     }
 
     async fn keep(

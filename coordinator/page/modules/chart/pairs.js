@@ -2,7 +2,8 @@
 
 import { html } from "../html.js";
 import { t } from "../language/language.js";
-import { digits, minus, parameterName, shown, tickWords, titled } from "../words/quantity.js";
+import { shownParameter } from "../words/parameter.js";
+import { digits, minus, tickWords, titled } from "../words/quantity.js";
 import { symbol } from "./colour.js";
 import { Entry, Figure, fileName } from "./figure.js";
 import { glyph } from "./glyph.js";
@@ -29,15 +30,15 @@ const CHARACTER = 5.4;
 
 /** The scale of a parameter in the unit that is shown: 3.5 sds about the mean and the 90 % interval, within the bounds of its prior. */
 export function scaleOf(/** @type {any} */ m, /** @type {[number, number]} */ range) {
-  const { scale } = shown(m.unit);
+  const { isLogarithm, of } = shownParameter(m);
   const low = Math.max(m.bounds[0] ?? -Infinity, Math.min(m.q05, m.mean - 3.5 * m.sd));
   const high = Math.min(m.bounds[1] ?? Infinity, Math.max(m.q95, m.mean + 3.5 * m.sd));
-  return d3.scaleLinear([low * scale, high * scale], range);
+  return (isLogarithm ? d3.scaleLog() : d3.scaleLinear()).domain([of(low), of(high)]).range(range);
 }
 
 /**
  * Places of ticks of which no label reaches out of its cell or into another.
- * @param {d3.ScaleLinear<number, number>} axis
+ * @param {d3.ScaleContinuousNumeric<number, number>} axis
  * @param {(label: string) => number} extent of a label along the axis [px]
  */
 export function ticksOf(axis, extent) {
@@ -62,7 +63,7 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
       g.call(axis.tickValues(values).tickFormat(tickWords).tickSize(3)).attr("font-size", 9).attr("font-family", "inherit").select(".domain").remove();
     const label = (/** @type {any} */ text, /** @type {any} */ m) => {
       text.attr("text-anchor", "middle").attr("font-size", 10).attr("fill", "currentColor");
-      [short(parameterName(m.name, m.unit)), titled("", shown(m.unit).unit).trim()].forEach((line, k) => text.append("tspan").attr("x", text.attr("x")).attr("dy", k === 0 ? 0 : "1.15em").text(line));
+      [short(shownParameter(m).name), titled("", shownParameter(m).unit).trim()].forEach((line, k) => text.append("tspan").attr("x", text.attr("x")).attr("dy", k === 0 ? 0 : "1.15em").text(line));
     };
     const svg = d3.create("svg").attr("viewBox", `0 0 ${whole} ${count * (side + GAP) + UNDER}`).attr("width", Math.min(width, whole));
     marginals.forEach((row, j) => marginals.slice(0, j + 1).forEach((column, i) => {
@@ -71,7 +72,7 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
       // A picture of its own, at whose edge contours end.
       const inside = cell.append("svg").attr("width", side).attr("height", side).attr("overflow", "hidden");
       const [across, up] = [scaleOf(column, [0, side]), scaleOf(row, [side, 0])];
-      const x = (/** @type {number} */ v) => across(v * shown(column.unit).scale);
+      const x = (/** @type {number} */ v) => across(shownParameter(column).of(v));
       if (i === j) {
         const top = d3.max(column.posterior) ?? 1;
         const line = d3.line((/** @type {any} */ _, k) => x(column.grid[k]), (/** @type {any} */ v) => side - (0.92 * side * v) / Number(top));
@@ -80,7 +81,7 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
       } else {
         const pair = pairOf(column, row);
         if (!pair) return;
-        const y = (/** @type {number} */ v) => up(v * shown(row.unit).scale);
+        const y = (/** @type {number} */ v) => up(shownParameter(row).of(v));
         regions(pair, x, y, pair.parameters[0].name !== column.name).forEach((/** @type {string} */ d) => inside.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"));
         cell.style("cursor", "pointer").on("click", () => onCell(pair));
       }
@@ -103,8 +104,8 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
   const open = (/** @type {any} */ event) => event.target.value !== "" && onCell(pairs[Number(event.target.value)]);
   return html`
     <p><label>Large picture of <select onChange=${open}><option value="">a pair: choose it, or click its cell</option>
-      ${pairs.map((p, k) => html`<option value=${k}>${p.parameters.map((/** @type {any} */ q) => parameterName(q.name, q.unit)).join(t` and `)}, rank correlation ${digits(p.rank_correlation, 2)}</option>`)}</select></label></p>
-    <${Figure} title=${t`Joint posterior of ${marginals.map((m) => parameterName(m.name, m.unit)).join(", ")}`} name=${fileName("pairs", name)} note="above the diagonal: rank correlations" deps=${[marginals.map((m) => m.name).join()]} draw=${draw}
+      ${pairs.map((p, k) => html`<option value=${k}>${p.parameters.map((/** @type {any} */ q) => shownParameter(q).name).join(t` and `)}, rank correlation ${digits(p.rank_correlation, 2)}</option>`)}</select></label></p>
+    <${Figure} title=${t`Joint posterior of ${marginals.map((m) => shownParameter(m).name).join(", ")}`} name=${fileName("pairs", name)} note="above the diagonal: rank correlations" deps=${[marginals.map((m) => m.name).join()]} draw=${draw}
       rows=${() => densities(pairs.filter((p) => p.parameters.every((/** @type {any} */ q) => marginals.some((m) => m.name === q.name))))} />`;
 }
 
@@ -133,26 +134,27 @@ function entryGlyph(/** @type {any} */ mark, /** @type {number} */ k) {
 
 /** @param {{ pair: any }} properties */
 export function JointPicture({ pair }) {
-  const [a, b] = pair.parameters.map((/** @type {any} */ p) => ({ name: p.name, title: parameterName(p.name, p.unit), ...shown(p.unit) }));
-  const domain = (/** @type {number} */ k, /** @type {number} */ scale) => /** @type {[number, number]} */ ([pair.grid[k][0] * scale, pair.grid[k].at(-1) * scale]);
+  const [a, b] = pair.parameters.map((/** @type {any} */ p) => ({ id: p.name, ...shownParameter(p) }));
+  const axis = (/** @type {import("../words/parameter.js").ShownParameter} */ { name, unit, isLogarithm, of }, /** @type {number} */ k) => ({
+    label: titled(name, unit), labelArrow: /** @type {const} */ ("none"), domain: [of(pair.grid[k][0]), of(pair.grid[k].at(-1))], tickFormat: tickWords, ...(isLogarithm ? { type: /** @type {const} */ ("log"), ticks: 4 } : {}) });
   const mark = (/** @type {any} */ m, /** @type {number} */ k) => {
     const stroke = `var(--series-${(k % 7) + 1})`;
-    if (m.at.y === null) return Plot.ruleX([m.at.x * a.scale], { stroke });
-    if (m.at.x === null) return Plot.ruleY([m.at.y * b.scale], { stroke });
-    return Plot.dot([m], { x: () => m.at.x * a.scale, y: () => m.at.y * b.scale, symbol: /** @type {any} */ (symbol(k + 1)), stroke, fill: stroke, r: 5 });
+    if (m.at.y === null) return Plot.ruleX([a.of(m.at.x)], { stroke });
+    if (m.at.x === null) return Plot.ruleY([b.of(m.at.y)], { stroke });
+    return Plot.dot([m], { x: () => a.of(m.at.x), y: () => b.of(m.at.y), symbol: /** @type {any} */ (symbol(k + 1)), stroke, fill: stroke, r: 5 });
   };
-  const title = t`Joint posterior of ${a.title} and ${b.title}`;
+  const title = t`Joint posterior of ${a.name} and ${b.name}`;
   return html`<${Figure} title=${title} note=${t`regions of ${pair.contours.map((/** @type {any} */ c) => Math.round(100 * c.share)).join(", ")} % of the posterior; rank correlation ${digits(pair.rank_correlation, 2)}`}
-    name=${fileName("joint", a.name, b.name)} deps=${[pair]} rows=${() => densities([pair])}
+    name=${fileName("joint", a.id, b.id)} deps=${[pair]} rows=${() => densities([pair])}
     legend=${pair.marks.map((/** @type {any} */ m, /** @type {number} */ k) => html`<${Entry} glyph=${entryGlyph(m, k)}>${m.label}<//>`)}
     draw=${(/** @type {number} */ width) => Plot.plot({
       width: Math.min(width, 620), height: 420, marginLeft: 60, marginBottom: 40, grid: true, style: STYLE,
-      x: { label: titled(a.title, a.unit), labelArrow: "none", labelAnchor: "center", domain: domain(0, a.scale), ticks: 6, tickFormat: tickWords },
-      y: { label: titled(b.title, b.unit), labelArrow: "none", domain: domain(1, b.scale), tickFormat: tickWords },
+      x: { ticks: 6, ...axis(a, 0), labelAnchor: "center" },
+      y: axis(b, 1),
       marks: [
-        (/** @type {any} */ _, /** @type {any} */ scales) => /** @type {any} */ (d3.create("svg:g").call((g) => regions(pair, (v) => scales.x(v * a.scale), (v) => scales.y(v * b.scale))
+        (/** @type {any} */ _, /** @type {any} */ scales) => /** @type {any} */ (d3.create("svg:g").call((g) => regions(pair, (v) => scales.x(a.of(v)), (v) => scales.y(b.of(v)))
           .forEach((/** @type {string} */ d) => g.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"))).node()),
-        ...pair.lines.map((/** @type {any} */ l) => Plot.line(l.points, { x: (p) => p[0] * a.scale, y: (p) => p[1] * b.scale, stroke: "var(--reference)", strokeDasharray: "6 4" })),
+        ...pair.lines.map((/** @type {any} */ l) => Plot.line(l.points, { x: (p) => a.of(p[0]), y: (p) => b.of(p[1]), stroke: "var(--reference)", strokeDasharray: "6 4" })),
         ...pair.marks.map(mark),
       ],
     })} />`;

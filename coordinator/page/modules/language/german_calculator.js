@@ -81,18 +81,18 @@ export const CALCULATOR = {
   "radius [m] of the rim with the soil that it carries along": "Radius [m] des Radkranzes mit dem Boden, den er mitnimmt",
   "resistive force theory of dry sand, with the grousers; seconds":
     "Theorie der Widerstandskräfte in trockenem Sand, mit den Stollen; Sekunden",
-  sd: "Standardabweichung",
   "slope that the pull balances": "Steigung, die die Zugkraft trägt",
   "speed of the rim": "Umfangsgeschwindigkeit",
   "stiffness of the sand [Pa/m]": "Steifigkeit des Sandes [Pa/m]",
   "that a new measurement says so": "dass eine neue Messung es so zeigt",
   "The cost is not known: {0}.": "Die Kosten sind nicht bekannt: {0}.",
   "the measured runs": "die gemessenen Fahrten",
+  "The model refuses every slip from {0} at {1}: {2}. Move the sliders, or choose another model.":
+    "Das Modell lehnt jeden Schlupf von {0} bei {1} ab: {2}. Verschieben Sie die Regler, oder wählen Sie ein anderes Modell.",
+  "The model refuses slip {0} at {1}: {2}.": "Das Modell lehnt den Schlupf {0} bei {1} ab: {2}.",
   "The model rejected {0} % of its parameter vectors.": "Das Modell hat {0} % der Parametervektoren abgelehnt.",
   "The program computes the curves …": "Das Programm rechnet die Kurven …",
   "The search that may follow is not in it.": "Die Suche, die folgen kann, ist nicht enthalten.",
-  "This model rolls over terrain: a prediction takes minutes.":
-    "Dieses Modell rollt über Gelände: eine Vorhersage dauert Minuten.",
   "tractive efficiency": "Zugwirkungsgrad",
   "What the calibrated models predict for a condition that nobody measured: mean and 90 % of new measurements (by the parameters alone where the noise is not known), over all models of the study by their evidence. Straight travel on level ground.":
     "Was die kalibrierten Modelle für eine Bedingung vorhersagen, die niemand gemessen hat: Mittel und 90 % neuer Messungen (nur nach den Parametern, wo das Rauschen nicht bekannt ist), über alle Modelle der Studie nach ihrer Evidenz. Geradeausfahrt auf ebenem Boden.",
@@ -101,5 +101,18 @@ export const CALCULATOR = {
   Whole: "Ganzes",
   "wheels {0}": "Räder {0}",
   "Within the fitted range.": "Innerhalb des angepassten Bereichs.",
+  "{0} (at {1} of {2} draws)": "{0} (bei {1} von {2} Ziehungen)",
   "{0} fitted runs with {1} measurements, {2} held out": "{0} angepasste Fahrten mit {1} Messungen, {2} zurückgehalten",
+  "A prediction of this model takes minutes: the page of the service makes it.":
+    "Eine Vorhersage dieses Modells dauert Minuten: Die Seite des Dienstes macht sie.",
+  "Interpolated between conditions that were computed with {0} draws.":
+    "Zwischen Bedingungen interpoliert, die mit {0} Ziehungen gerechnet sind.",
+  "the predictions": "die Vorhersagen",
+  "The model refuses this load or speed, or one beside it.": "Das Modell lehnt diese Last oder Geschwindigkeit ab, oder eine daneben.",
+  "This model takes minutes for a prediction.": "Dieses Modell braucht Minuten für eine Vorhersage.",
+  "This report has no predictions of this model.": "Dieser Bericht hat keine Vorhersagen dieses Modells.",
+  "A German Excel file": "Eine deutsche Excel-Datei",
+  "a table as a rig keeps it, in per cent, kN and mm with decimal commas: its import;":
+    "eine Tabelle, wie ein Prüfstand sie führt, in Prozent, kN und mm mit Dezimalkommas: ihr Import;",
+  "save the file": "die Datei speichern",
 };

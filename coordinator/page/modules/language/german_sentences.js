@@ -77,7 +77,6 @@ export const SENTENCES = {
   "Nats: log evidence over that of the model as it is. Bold lines are in the 95 % set of explanations. Half of the prior probability is on “nothing is missing”.{0}":
     "Nat: logarithmische Evidenz über der des Modells, wie es ist. Fette Zeilen gehören zur 95-%-Menge der Erklärungen. Die Hälfte der Prior-Wahrscheinlichkeit liegt auf „nichts fehlt“.{0}",
   "No calibration of this study is finished yet.": "Noch ist keine Kalibrierung dieser Studie fertig.",
-  "No calibration of this study is finished yet;": "Noch ist keine Kalibrierung dieser Studie fertig;",
   "No run within reach of the rig would change these probabilities by much.":
     "Keine Fahrt in Reichweite des Prüfstands würde diese Wahrscheinlichkeiten viel ändern.",
   "No runs are held out: errors are of each condition, predicted from the others by weighting the draws, exact enough to rank models alone":
@@ -130,8 +129,6 @@ export const SENTENCES = {
   "The noise is the standard deviation of one measurement. Where the field is blank, it is inferred with the model; a misfit then counts as noise.":
     "Das Rauschen ist die Standardabweichung einer Messung. Wo das Feld leer ist, wird es mit dem Modell geschätzt; eine Abweichung zählt dann als Rauschen.",
   "the others follow, as they do among the draws": "die anderen folgen, wie unter den Ziehungen",
-  "The posterior is known as soon as a calibration has finished. The view Live shows how far it is.":
-    "Der Posterior ist bekannt, sobald eine Kalibrierung fertig ist. Die Ansicht „Verlauf“ zeigt, wie weit sie ist.",
   "The program is at work on {0}; the numbers appear here as they come.":
     "Das Programm arbeitet an {0}; die Zahlen erscheinen hier, sobald sie kommen.",
   "The result is a function of job, seed and model version alone: the same three give the same numbers, bit for bit.":
@@ -174,4 +171,10 @@ export const SENTENCES = {
     "{0} Rechner haben {1} Ergebnisse gerechnet; {2} wurden zweimal gerechnet und stimmten überein.",
   "{0}, the experiment of {1}: it describes wheel, soil and noise":
     "{0}, das Experiment von {1}: es beschreibt Rad, Boden und Rauschen",
+  "×/÷: the job has the decimal logarithm of the parameter; one sd is this factor.":
+    "×/÷: Der Job hat den dekadischen Logarithmus des Parameters; eine Standardabweichung ist dieser Faktor.",
+  "The calibration failed, so that there is nothing to show.": "Die Kalibrierung ist fehlgeschlagen, deshalb gibt es nichts zu zeigen.",
+  "The story": "Das Ergebnis",
+  "says why, and what to do.": "sagt, warum, und was zu tun ist.",
+  "The study was cancelled before a calibration had finished.": "Die Studie wurde abgebrochen, bevor eine Kalibrierung fertig war.",
 };

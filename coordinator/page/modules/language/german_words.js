@@ -546,7 +546,6 @@ export const WORDS = {
   "{0} to {1}": "{0} bis {1}",
   "{0} with one more effect": "{0} mit einem weiteren Effekt",
   "{0} with {1} more effects": "{0} mit {1} weiteren Effekten",
-  "{0} {1} ({2} to {3})": "{0} {1} ({2} bis {3})",
   "{0}, measured and computed": "{0}, gemessen und berechnet",
   "{0}, measured and computed, by {1}": "{0}, gemessen und berechnet, über {1}",
   "{0}, rank correlation {1}": "{0}, Rangkorrelation {1}",

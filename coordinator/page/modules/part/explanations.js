@@ -4,7 +4,8 @@ import { html, useState } from "../html.js";
 import { t } from "../language/language.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { capital, digits, minus, parameterName, probability, shown, words } from "../words/quantity.js";
+import { parameterValue, shownParameter } from "../words/parameter.js";
+import { capital, digits, minus, parameterName, probability, raised, words } from "../words/quantity.js";
 import { additionOf, TakeBack } from "./take_back.js";
 
 /** A fitted parameter below this is 0. */
@@ -40,7 +41,7 @@ export function Explanations({ record, ghost, kept, show, keep, add, study, mode
               onMouseEnter=${() => show(effect.name)} onMouseLeave=${() => show(null)}>
             <th scope="row">
               <button class="plain" type="button" onFocus=${() => show(effect.name)} onBlur=${() => show(null)} onClick=${() => keep(kept === effect.name ? null : effect.name)} aria-pressed=${kept === effect.name} aria-label=${t`${titleOf(effect.name)}: show what ${OTHERS[effect.name] ?? effect.name} would change`}><b>${titleOf(effect.name)}</b></button>
-              <span class="note">${effect.name in OTHERS ? null : html`<code>${effect.name}</code>`} ${[untried.get(effect.name), (classes.get(effect.class) ?? 0) > 1 ? t`these data cannot tell it from ${same(record, effect)}` : null].filter(Boolean).join("; ")}</span>
+              <span class="note">${effect.name in OTHERS ? null : html`<code>${effect.name}</code>`} ${[raised(untried.get(effect.name) ?? ""), (classes.get(effect.class) ?? 0) > 1 ? t`these data cannot tell it from ${same(record, effect)}` : null].filter(Boolean).join("; ")}</span>
             </th>
             <td><span class="bar"><i style=${{ width: `${(100 * effect.probability).toFixed(1)}%` }}></i></span> <span class="number">${probability(effect.probability)}</span></td>
             <td class="number">${nats(effect.log_bayes_factor)}</td>
@@ -70,8 +71,8 @@ const isAbsent = (/** @type {any} */ { parameters }) =>
 function strength(/** @type {string} */ name, /** @type {number} */ value, /** @type {string | undefined} */ stated) {
   const parameter = name.split(".").slice(1).join(".") || name;
   if (stated === undefined) return `${parameterName(parameter, null)} ${digits(value)} (SI)`;
-  const { unit, scale } = shown(stated);
-  return `${parameterName(parameter, stated)} ${digits(value * scale)}${unit === "1" ? "" : ` ${unit}`}`;
+  const called = { name: parameter, unit: stated };
+  return `${shownParameter(called).name} ${parameterValue(called, value)}`;
 }
 
 /** The others of a class. */

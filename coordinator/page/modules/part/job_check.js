@@ -2,7 +2,8 @@
 
 import { html } from "../html.js";
 import { t } from "../language/language.js";
-import { capital, digits, duration, parameterName, shown } from "../words/quantity.js";
+import { meanAndSpread, shownParameter } from "../words/parameter.js";
+import { capital, digits, duration } from "../words/quantity.js";
 import { Table } from "./table.js";
 
 /** @param {{ answer: import("../rest/routes.js").Schemas["JobCheck"] }} properties */
@@ -18,9 +19,11 @@ export function JobCheck({ answer }) {
 
 function Model(/** @type {{ model: import("../rest/routes.js").Schemas["CheckedModel"] }} */ { model }) {
   const rows = model.parameters.map((parameter) => {
-    const { unit, scale } = shown(parameter.unit);
-    const value = (/** @type {number | null | undefined} */ v) => (v === null || v === undefined ? "–" : digits(v * scale));
-    return [parameterName(parameter.name, parameter.unit), value(parameter.prior_mean), value(parameter.prior_sd), value(parameter.lower), value(parameter.upper), unit === "1" ? "" : unit];
+    const called = shownParameter(parameter);
+    const value = (/** @type {number | null | undefined} */ v) => (v === null || v === undefined ? "–" : digits(called.of(v)));
+    const { prior_mean: mean, prior_sd: sd } = parameter;
+    const spread = mean === null || mean === undefined || sd === null || sd === undefined ? value(mean) : meanAndSpread(called, mean, sd);
+    return [called.name, spread, value(parameter.lower), value(parameter.upper), called.unit];
   });
   return html`
     <h3>${model.model}</h3>
@@ -28,7 +31,7 @@ function Model(/** @type {{ model: import("../rest/routes.js").Schemas["CheckedM
     <p class="cost"><b>${costWords(model)}</b></p>
     ${model.cost && html`<p class="note">${model.cost.pilot}${model.cost.rejected_share > 0.005 ? ` ${t`The model rejected ${Math.round(100 * model.cost.rejected_share)} % of its parameter vectors.`}` : ""} ${t`The search that may follow is not in it.`}</p>`}
     <details><summary>Priors of ${model.parameters.length} parameters</summary>
-      <${Table} label="Priors" head=${[t`parameter`, t`mean`, t`sd`, t`least`, t`greatest`, t`unit`]} rows=${rows} numbers=${[1, 2, 3, 4]} /></details>`;
+      <${Table} label="Priors" head=${[t`parameter`, t`mean ± sd`, t`least`, t`greatest`, t`unit`]} rows=${rows} numbers=${[1, 2, 3]} /></details>`;
 }
 
 /** `About 9543 evaluations of 24 simulations each: 10 s on one core, 5 s on the 2 cores here`. */

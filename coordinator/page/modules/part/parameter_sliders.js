@@ -6,7 +6,8 @@ import { t } from "../language/language.js";
 import { changed, coordinate, meanSetting, predict, rmse, valueAt } from "../response_surface.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { channelName, digits, parameterName, shown, size } from "../words/quantity.js";
+import { parameterValue, shownParameter } from "../words/parameter.js";
+import { channelName, digits, shown, size } from "../words/quantity.js";
 import { ChannelCharts } from "./channel_charts.js";
 import { Pending } from "./message.js";
 import { Table } from "./table.js";
@@ -53,11 +54,10 @@ function Sliders(/** @type {{ surface: ResponseSurface, rows: any[], axis: any, 
 }
 
 function Slider(/** @type {{ id: string, parameter: ResponseSurface["parameters"][number], value: number, move: (value: number) => void }} */ { id, parameter, value, move }) {
-  const { unit, scale } = shown(parameter.unit);
-  const text = `${digits(value * scale, 4)}${unit === "1" ? "" : ` ${unit}`}`;
+  const text = parameterValue(parameter, value, 4);
   return html`
     <div class="slider">
-      <label for=${id}>${parameterName(parameter.name, parameter.unit)}</label>
+      <label for=${id}>${shownParameter(parameter).name}</label>
       <span class="value" aria-hidden="true">${text}</span>
       <input id=${id} type="range" step="any" min=${coordinate(parameter, parameter.lower)} max=${coordinate(parameter, parameter.upper)} value=${coordinate(parameter, value)}
         aria-valuetext=${text} onInput=${(/** @type {any} */ event) => move(valueAt(parameter, Number(event.target.value)))} />

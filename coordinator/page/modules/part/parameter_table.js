@@ -2,17 +2,9 @@
 
 import { html } from "../html.js";
 import { t } from "../language/language.js";
-import { digits, meanAndSd, parameterName, shown, withSd } from "../words/quantity.js";
+import { meanAndSpread, parameterValues, shownParameter } from "../words/parameter.js";
+import { digits, parameterName } from "../words/quantity.js";
 import { Table } from "./table.js";
-
-/** What a logarithm is in the unit itself: `45.7 kPa (41.7 to 49.8)`; blank of what is none. */
-function ofLogarithm(/** @type {any} */ { unit: stated, mean, q05, q95 }) {
-  const [, base] = /^log10 (.+)$/.exec(stated) ?? [];
-  if (base === undefined) return "";
-  const { unit, scale } = shown(base);
-  const [value, low, high] = [mean, q05, q95].map((exponent) => digits(10 ** exponent * scale));
-  return t`${value} ${unit} (${low} to ${high})`;
-}
 
 /** @param {{ marginals: any[], line: any }} properties line: of the ledger, or of the point estimates */
 export function ParameterTable({ marginals, line }) {
@@ -21,17 +13,17 @@ export function ParameterTable({ marginals, line }) {
     return html`<${Table} label="Parameters" head=${[t`parameter (SI units)`, t`value of the fit`]} rows=${rows} numbers=${[1]} />`;
   }
   const rows = marginals.map((m) => {
-    const { unit, scale } = shown(m.unit);
+    const called = shownParameter(m);
     const known = line?.parameters?.[m.name];
-    const { mean, sd } = meanAndSd(m.mean * scale, m.sd * scale);
-    const prior = known && meanAndSd(known.prior_mean * scale, known.prior_sd * scale);
-    const [low, high, mode] = withSd([m.q05 * scale, m.q95 * scale, m.mode === null ? null : m.mode * scale], m.sd * scale);
+    const [low, high, mode] = parameterValues(called, [m.q05, m.q95, m.mode], m.mean, m.sd);
     return [
-      parameterName(m.name, m.unit), unit === "1" ? "" : unit, `${mean} ± ${sd}`, t`${low} to ${high}`, mode, prior ? `${prior.mean} ± ${prior.sd}` : "–",
-      m.reference === null ? "–" : digits(m.reference * scale, 4),
-      html`${ofLogarithm(m)} ${known?.at_bound && html`<span class="state failed">at a bound of its prior</span>`}`,
+      called.name, called.unit, meanAndSpread(called, m.mean, m.sd), t`${low} to ${high}`, mode, known ? meanAndSpread(called, known.prior_mean, known.prior_sd) : "–",
+      m.reference === null ? "–" : digits(called.of(m.reference), 4),
+      html`${called.isLogarithm && html`<code>${m.name}</code>`} ${known?.at_bound && html`<span class="state failed">at a bound of its prior</span>`}`,
     ];
   });
+  const hasFactor = marginals.some((m) => shownParameter(m).isLogarithm);
   return html`<${Table} label="Parameters" numbers=${[2, 3, 4, 5, 6]} rows=${rows}
-    head=${[t`parameter`, t`unit`, t`mean ± sd`, t`90 % interval`, t`mode`, t`prior mean ± sd`, t`reference value`, t`remark`]} />`;
+    head=${[t`parameter`, t`unit`, t`mean ± sd`, t`90 % interval`, t`mode`, t`prior mean ± sd`, t`reference value`, t`remark`]} />
+    ${hasFactor && html`<p class="note">×/÷: the job has the decimal logarithm of the parameter; one sd is this factor.</p>`}`;
 }

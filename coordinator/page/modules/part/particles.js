@@ -6,7 +6,8 @@ import { html, useEffect, useMemo, useState } from "../html.js";
 import { t } from "../language/language.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { digits, parameterName, shown, tickWords, titled } from "../words/quantity.js";
+import { shownParameter } from "../words/parameter.js";
+import { digits, tickWords, titled } from "../words/quantity.js";
 import { Pending } from "./message.js";
 
 const FRAME_MS = 700;
@@ -37,7 +38,7 @@ export function Particles({ id, stages }) {
   const exponent = stages[stage - 1]?.tempering_exponent;
   const choose = (/** @type {number} */ end) => html`<label>${end === 0 ? t`across` : t`up`} <select value=${chosen[end]}
     onChange=${(/** @type {any} */ e) => setPair(pair.map((k, i) => (i === end ? Number(e.target.value) : k)))}>
-    ${parameters.map(({ name, unit }, k) => html`<option value=${k} selected=${k === chosen[end]}>${parameterName(name, unit)}</option>`)}</select></label>`;
+    ${parameters.map(({ name, unit }, k) => html`<option value=${k} selected=${k === chosen[end]}>${shownParameter({ name, unit }).name}</option>`)}</select></label>`;
   return html`
     <h2>Particles</h2>
     <div class="actions">${choose(0)} ${choose(1)}
@@ -75,13 +76,14 @@ const parametersOf = (population) => (population?.parameters ?? []).map((name, k
 
 /** @param {{ id: number, x: { name: string, unit: string }, y: { name: string, unit: string }, now: any[], early: any[] }} properties */
 function Cloud({ id, x, y, now, early }) {
-  const label = (/** @type {{ name: string, unit: string }} */ p) => titled(parameterName(p.name, p.unit), shown(p.unit).unit);
-  const at = { x: (/** @type {any} */ p) => p.x * shown(x.unit).scale, y: (/** @type {any} */ p) => p.y * shown(y.unit).scale };
-  return html`<${Figure} title=${t`Particles in ${parameterName(x.name, x.unit)} and ${parameterName(y.name, y.unit)}`} note="grey: the first stage, close to the prior"
+  const [across, up] = [x, y].map(shownParameter);
+  const at = { x: (/** @type {any} */ p) => across.of(p.x), y: (/** @type {any} */ p) => up.of(p.y) };
+  const axis = (/** @type {import("../words/parameter.js").ShownParameter} */ { name, unit, isLogarithm }) => ({ label: titled(name, unit), labelArrow: /** @type {const} */ ("none"), ticks: 6, tickFormat: tickWords, ...(isLogarithm ? { type: /** @type {const} */ ("log") } : {}) });
+  return html`<${Figure} title=${t`Particles in ${across.name} and ${up.name}`} note="grey: the first stage, close to the prior"
     name=${fileName("particles", id, x.name, y.name)} deps=${[now, early]} rows=${() => now}
     draw=${(/** @type {number} */ width) => Plot.plot({
       width: Math.min(width, 640), height: 380, marginLeft: 64, marginTop: 26, marginBottom: 40, grid: true, style: STYLE,
-      x: { label: label(x), labelArrow: "none", labelAnchor: "center", ticks: 6, tickFormat: tickWords }, y: { label: label(y), labelArrow: "none", tickFormat: tickWords },
+      x: { ...axis(across), labelAnchor: "center" }, y: axis(up),
       marks: [Plot.dot(early, { ...at, r: 1.6, fill: "var(--rule)" }), Plot.dot(now, { ...at, r: 2, fill: "var(--series-0)", fillOpacity: 0.6 })],
     })} />`;
 }

@@ -21,6 +21,7 @@ export const path = {
   figures: (/** @type {number} */ id) => `${calibration(id)}/figures`,
   provenance: (/** @type {number} */ id) => `${calibration(id)}/provenance`,
   responseSurface: (/** @type {number} */ id) => `${calibration(id)}/response-surface`,
+  predictionGrid: (/** @type {number} */ id) => `${calibration(id)}/prediction-grid`,
   job: (/** @type {number} */ id) => `${calibration(id)}/job`,
   histories: (/** @type {number} */ id) => `${calibration(id)}/histories`,
   discovery: (/** @type {number} */ id) => `${calibration(id)}/discovery`,

@@ -5,6 +5,7 @@ import { HistoryChart } from "../chart/history_chart.js";
 import { varying } from "../chart/condition.js";
 import { t } from "../language/language.js";
 import { AxisPicker, ChannelCharts } from "../part/channel_charts.js";
+import { NoModel } from "../part/no_model.js";
 import { ParameterFold } from "../part/parameter_fold.js";
 import { Pending } from "../part/message.js";
 import { RunTable } from "../part/run_table.js";
@@ -22,7 +23,7 @@ export function Compare({ study, model, query }) {
     setKey(to);
     if (!isReport) replace(address(["studies", study.id, "compare"], { ...query, against: to }));
   };
-  if (!model) return html`<p class="empty">No calibration of this study is finished yet; <a href=${`#/studies/${study.id}/live`}>Live</a> shows how far it is.</p>`;
+  if (!model) return html`<${NoModel} study=${study} />`;
   if (!comparison) return html`<${Pending} answer=${comparison} error=${error} what="the comparison" />`;
   const axes = varying(comparison.rows);
   const axis = axes.find((a) => a.key === key) ?? axes[0];

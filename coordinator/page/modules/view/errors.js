@@ -5,6 +5,7 @@ import { colour } from "../chart/colour.js";
 import { varying } from "../chart/condition.js";
 import { AxisPicker, ChannelCharts } from "../part/channel_charts.js";
 import { Ledger } from "../part/ledger.js";
+import { NoModel } from "../part/no_model.js";
 import { LedgerCharts } from "../chart/ledger_chart.js";
 import { ledgerLines } from "../chart/ledger_lines.js";
 import { path } from "../rest/routes.js";
@@ -20,6 +21,7 @@ export function Errors({ study }) {
   const all = [...lines, ...compared.map((/** @type {any} */ m, /** @type {number} */ k) => ({ id: m.calibration, name: m.name, colour: colour(lines.length + k) }))];
   const shown = all.filter((line) => !hidden.includes(line.id));
   const answers = useAnswers(shown.map((line) => path.comparison(line.id)));
+  if (lines.length === 0 && ["failed", "cancelled"].includes(study.state)) return html`<${NoModel} study=${study} />`;
   if (lines.length === 0) return html`<p class="empty">The ledger has a line for each finished calibration with a posterior; none is finished yet.</p>`;
   const flip = (/** @type {number} */ id) => setHidden(hidden.includes(id) ? hidden.filter((h) => h !== id) : [...hidden, id]);
   const layers = shown.filter((line) => path.comparison(line.id) in answers).map((line) => ({ name: line.name, colour: line.colour, rows: answers[path.comparison(line.id)].rows }));

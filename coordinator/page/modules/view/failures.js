@@ -9,6 +9,7 @@ import { ResidualChart } from "../chart/residual_chart.js";
 import { byRun, pointable } from "../chart/runs.js";
 import { t } from "../language/language.js";
 import { Pending } from "../part/message.js";
+import { NoModel } from "../part/no_model.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { conditionWords, runName } from "../words/condition.js";
@@ -29,7 +30,7 @@ export function Failures({ study, model }) {
   const [order, setOrder] = useState("slip");
   const rows = useMemo(() => withPlace(comparison?.rows ?? []), [comparison]);
   const ofChannel = useMemo(() => CHANNELS.map((channel) => ({ channel, own: rows.filter((r) => r.channel === channel) })).filter(({ own }) => own.length > 0), [rows]);
-  if (!model) return html`<p class="empty">No calibration of this study is finished yet.</p>`;
+  if (!model) return html`<${NoModel} study=${study} />`;
   if (!comparison) return html`<${Pending} answer=${comparison} error=${error} what="the residuals" />`;
   const axes = varying(comparison.rows);
   const orders = [...axes.map((a) => ({ key: a.key, title: a.title })), { key: "made", title: t`order of the runs` }, { key: "size", title: t`size of the residual` }];

@@ -16,7 +16,7 @@ import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address, replace } from "../route.js";
 import { words } from "../words/quantity.js";
-import { shareOf, toGo } from "../words/share.js";
+import { toGo } from "../words/time_to_go.js";
 import { progressWords } from "../words/state.js";
 
 /** How often the workers are asked for [ms]. */
@@ -78,7 +78,7 @@ function Member(/** @type {{ member: any, reload: () => void }} */ { member, rel
   const isLoading = isOver && recorded.answer === null;
   const state = isOver ? member.state : status?.state ?? member.state;
   const progress = isOver ? null : status?.progress;
-  const share = progress ? shareOf(progress) : null;
+  const share = progress?.share ?? null;
   const seen = useRef(/** @type {{ share: number, ms: number } | null} */ (null));
   if (share !== null) seen.current ??= { share, ms: Date.now() };
   return html`

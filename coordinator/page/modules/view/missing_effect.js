@@ -9,6 +9,7 @@ import { ChannelCharts } from "../part/channel_charts.js";
 import { Explanations, OTHERS } from "../part/explanations.js";
 import { Failure, Pending } from "../part/message.js";
 import { NewRuns } from "../part/new_runs.js";
+import { NoModel } from "../part/no_model.js";
 import { NotTried } from "../part/not_tried.js";
 import { isReport } from "../rest/answers.js";
 import { discover, extend, path } from "../rest/routes.js";
@@ -30,7 +31,7 @@ export function MissingEffect({ study, model, query, reload }) {
   const ghost = pointed ?? kept;
   const [failure, setFailure] = useState(/** @type {any} */ (null));
   const [isBusy, setBusy] = useState(false);
-  if (!model) return html`<p class="empty">No calibration of this study is finished yet.</p>`;
+  if (!model) return html`<${NoModel} study=${study} />`;
   // The address holds the choice, so that everybody who opens it sees the same curves.
   const keep = (/** @type {string | null} */ effect) => {
     setKept(effect);

@@ -11,12 +11,16 @@ import { ImportTable } from "../part/import_table.js";
 import { Failure } from "../part/message.js";
 import { RigForm } from "../part/rig_form.js";
 import { RunChoices } from "../part/run_choices.js";
+import { request } from "../rest/answers.js";
 import { addExperiment, check, describe, filesOfStudy, get, path, submit } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address } from "../route.js";
 import { tagsOf } from "../words/details.js";
 
 /** @typedef {import("../draft.js").Files} Files */
+
+/** A table to import, which the program carries. */
+const EXAMPLE_TABLE = { name: "Messung_Sand.xlsx", path: "/page/example/Messung_Sand.xlsx" };
 
 /** @param {{ query: Record<string, string> }} properties query.example: the example to begin with. query.study: the
  *   study to begin again with */
@@ -72,6 +76,14 @@ export function NewCalibration({ query }) {
     }
   };
   useEffect(() => void (query.example && open(query.example)), [query.example]);
+  const openTable = async () => {
+    try {
+      const content = await (await request("GET", EXAMPLE_TABLE.path)).arrayBuffer();
+      take({ texts: {}, bytes: { [EXAMPLE_TABLE.name]: new Uint8Array(content) } });
+    } catch (error) {
+      setFailure(error);
+    }
+  };
   const again = async (/** @type {string} */ study) => {
     try {
       const draft = await filesOfStudy(study);
@@ -138,7 +150,8 @@ export function NewCalibration({ query }) {
     <h1>New calibration</h1>
     <${DropZone} onFiles=${take} />
     ${examples.answer?.length > 0 && html`<p>Or begin with an example:</p><ul class="examples">
-      ${examples.answer.map((/** @type {any} */ e) => html`<li><button type="button" onClick=${() => open(e.name)}>${e.name}</button> <span><b>${e.title}</b>: <span class="note">${e.summary}</span></span></li>`)}</ul>`}
+      ${examples.answer.map((/** @type {any} */ e) => html`<li><button type="button" onClick=${() => open(e.name)}>${e.name}</button> <span><b>${e.title}</b>: <span class="note">${e.summary}</span></span></li>`)}
+      <li><button type="button" onClick=${openTable}>${EXAMPLE_TABLE.name}</button> <span><b>A German Excel file</b>: <span class="note">a table as a rig keeps it, in per cent, kN and mm with decimal commas: its import; <a href=${EXAMPLE_TABLE.path} download>save the file</a></span></span></li></ul>`}
     ${table && html`<${ImportTable} key=${table} name=${table} bytes=${bytes[table] ?? new TextEncoder().encode(files[table])} onRemove=${() => remove(table)}
       onFiles=${(/** @type {Files} */ made) => { change({ ...without(files, table), ...made }); setBytes(without(bytes, table)); }} />`}
     ${isRuns && html`<${RunChoices} text=${files[runs]} onText=${(/** @type {string} */ text) => add({ [runs]: text })} />`}

@@ -7,11 +7,13 @@ import { JointPicture, PairPlot } from "../chart/pairs.js";
 import { html, useState } from "../html.js";
 import { t } from "../language/language.js";
 import { Failure, Pending } from "../part/message.js";
+import { NoModel } from "../part/no_model.js";
 import { ParameterTable } from "../part/parameter_table.js";
 import { isReport } from "../rest/answers.js";
 import { get, path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { parameterName, shown, tickWords, titled } from "../words/quantity.js";
+import { shownParameter } from "../words/parameter.js";
+import { tickWords, titled } from "../words/quantity.js";
 
 /** So many parameters fit into one pair plot. */
 const MOST = 6;
@@ -19,7 +21,7 @@ const MOST = 6;
 /** @param {{ study: any, model: any }} properties */
 export function Posterior({ study, model }) {
   const { answer, error } = useAnswer(model && path.figures(model.id));
-  if (!model) return html`<p class="empty">The posterior is known as soon as a calibration has finished. The view Live shows how far it is.</p>`;
+  if (!model) return html`<${NoModel} study=${study} />`;
   const line = [...study.ledger, ...(study.point_estimates ?? [])].find((/** @type {any} */ l) => l.calibration === model.id);
   if (!answer) return html`<${Pending} answer=${answer} error=${error} what="The posterior" />`;
   const marginals = (answer.marginals ?? []).map((/** @type {any} */ m) => ({ ...m, ...m.parameter }));
@@ -41,24 +43,25 @@ function Pictures(/** @type {{ marginals: any[], pairs: any[], model: any }} */ 
     <p class="legend"><span>filled: posterior</span><span>dashed outline: prior</span><span>line: mode</span><span>dotted line: reference value, where one was measured</span></p>
     <h2>Pairs of parameters</h2>
     ${names.length > MOST && html`<div class="actions" role="group" aria-label="Parameters in the pair plot">
-      ${marginals.map(({ name, unit }) => html`<button type="button" aria-pressed=${chosen.includes(name)} onClick=${() => flip(name)}>${parameterName(name, unit)}</button>`)}</div>`}
+      ${marginals.map(({ name, unit }) => html`<button type="button" aria-pressed=${chosen.includes(name)} onClick=${() => flip(name)}>${shownParameter({ name, unit }).name}</button>`)}</div>`}
     <${PairPlot} pairs=${pairs} marginals=${marginals.filter((/** @type {any} */ m) => chosen.includes(m.name))} name=${model.name} onCell=${setCell} />
     ${cell && html`<div class="card"><${JointPicture} pair=${cell} /><button type="button" onClick=${() => setCell(null)}>Close</button></div>`}`;
 }
 
 function Marginal(/** @type {{ marginal: any }} */ { marginal }) {
-  const { unit, scale } = shown(marginal.unit);
-  const rows = marginal.grid.map((/** @type {number} */ x, /** @type {number} */ k) => ({ x: x * scale, prior: marginal.prior[k], posterior: marginal.posterior[k] }));
-  return html`<${Figure} title=${t`Posterior of ${parameterName(marginal.name, marginal.unit)}`} name=${fileName("posterior", marginal.name)} deps=${[marginal]} rows=${() => rows}
+  const { name, unit, isLogarithm, of } = shownParameter(marginal);
+  const isLog = marginal.logarithmic || isLogarithm;
+  const rows = marginal.grid.map((/** @type {number} */ x, /** @type {number} */ k) => ({ x: of(x), prior: marginal.prior[k], posterior: marginal.posterior[k] }));
+  return html`<${Figure} title=${t`Posterior of ${name}`} name=${fileName("posterior", marginal.name)} deps=${[marginal]} rows=${() => rows}
     draw=${(/** @type {number} */ width) => Plot.plot({
       width, height: 190, marginLeft: 14, marginRight: 14, marginBottom: 40, style: STYLE,
-      x: { type: marginal.logarithmic ? "log" : "linear", label: titled(parameterName(marginal.name, marginal.unit), unit), labelArrow: "none", labelAnchor: "center", ticks: 5, ...(marginal.logarithmic ? {} : { tickFormat: tickWords }), grid: true }, y: { axis: null },
+      x: { type: isLog ? "log" : "linear", label: titled(name, unit), labelArrow: "none", labelAnchor: "center", ticks: 5, ...(marginal.logarithmic ? {} : { tickFormat: tickWords }), grid: true }, y: { axis: null },
       marks: [
         Plot.areaY(rows, { x: "x", y1: 0, y2: "posterior", fill: "var(--series-0)", fillOpacity: 0.3 }),
         Plot.lineY(rows, { x: "x", y: "posterior", stroke: "var(--series-0)" }),
         Plot.lineY(rows, { x: "x", y: "prior", stroke: "var(--prior)", strokeDasharray: "5 3" }),
-        ...(marginal.mode === null ? [] : [Plot.ruleX([marginal.mode * scale], { stroke: "var(--ink)" })]),
-        ...(marginal.reference === null ? [] : [Plot.ruleX([marginal.reference * scale], { stroke: "var(--reference)", strokeDasharray: "2 3", strokeWidth: 2 })]),
+        ...(marginal.mode === null ? [] : [Plot.ruleX([of(marginal.mode)], { stroke: "var(--ink)" })]),
+        ...(marginal.reference === null ? [] : [Plot.ruleX([of(marginal.reference)], { stroke: "var(--reference)", strokeDasharray: "2 3", strokeWidth: 2 })]),
         Plot.ruleY([0], { stroke: "var(--rule)" }),
       ],
     })} />`;

@@ -4,17 +4,18 @@ import { PredictionChart } from "../chart/prediction_chart.js";
 import { html, useEffect, useMemo, useState } from "../html.js";
 import { t } from "../language/language.js";
 import { Failure, Pending } from "../part/message.js";
+import { NoModel } from "../part/no_model.js";
 import { Table } from "../part/table.js";
 import * as table from "../prediction_table.js";
+import { isReport } from "../rest/answers.js";
 import { path, predict } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { loadWords, slipWords, speedWords } from "../words/condition.js";
 import { rimSpeed } from "../words/group.js";
 import { channelOf, intervalName, measuredQuantities, quantityName, shownQuantities, statementOf } from "../words/predicted_quantity.js";
 import { capital, digits, minus, numberOf, probability, shown, titled } from "../words/quantity.js";
+import { reasonWords } from "../words/refusal.js";
 
-/** Draws of the grid: enough for a curve to follow the sliders; what stands still is computed with all draws. */
-const GRID_DRAWS = 40;
 /** So long the sliders stand still before their place is computed [ms]. */
 const REST_MS = 350;
 /** Runs whose load and speed differ by less are near a condition. */
@@ -24,32 +25,34 @@ const CONDITIONS = /** @type {const} */ (["slip", "load", "speed"]);
 /** @param {{ study: any, model: any }} properties */
 export function Predict({ study, model }) {
   const { answer: comparison, error } = useAnswer(model ? path.comparison(model.id) : null);
-  if (!model) return html`<p class="empty">No calibration of this study is finished yet.</p>`;
+  const { answer: grid, error: failure } = useAnswer(model ? path.predictionGrid(model.id) : null);
+  if (!model) return html`<${NoModel} study=${study} />`;
   if (!comparison) return html`<${Pending} answer=${comparison} error=${error} what="the measured runs" />`;
   const fitted = comparison.rows.filter((/** @type {any} */ row) => row.use === "fit");
   if (fitted.length === 0) return html`<p class="empty">No wheel run is fitted, so that nothing tells what a wheel would do.</p>`;
-  return html`<${Calculator} key=${model.id} study=${study} model=${model} rows=${comparison.rows} fitted=${fitted} />`;
+  if (isReport && failure) return html`<p class="empty">This report has no predictions of this model.</p>`;
+  if (!grid) return html`<${Pending} answer=${grid} error=${failure} what="the predictions" />`;
+  return html`<${Calculator} key=${model.id} study=${study} model=${model} rows=${comparison.rows} fitted=${fitted} grid=${grid} />`;
 }
 
-function Calculator(/** @type {{ study: any, model: any, rows: any[], fitted: any[] }} */ { study, model, rows, fitted }) {
-  const ranges = useMemo(() => table.fittedRanges(fitted), [fitted]);
-  const reach = useMemo(() => table.reach(ranges), [ranges]);
-  const isRim = useMemo(() => table.holdsRim(fitted), [fitted]);
+/** @param {{ study: any, model: any, rows: any[], fitted: any[], grid: table.Grid }} properties */
+function Calculator({ study, model, rows, fitted, grid }) {
+  const [ranges, reach, isRim] = [table.rangesOf(grid.fitted), table.rangesOf(grid.reach), grid.holds_rim];
   const wheels = [...new Set(fitted.map((row) => row.wheel))];
-  const [place, setPlace] = useState(/** @type {table.Place} */ ({
-    ...table.middle(fitted, ranges), wheel: wheels[0] }));
+  const [place, setPlace] = useState(/** @type {table.Place} */ ({ ...table.middle(fitted, ranges, isRim), wheel: wheels[0] }));
   const [chosen, setChosen] = useState("drawbar_pull_n");
   const [statement, setStatement] = useState(/** @type {{ sign: string, limit: string }} */ ({ sign: ">", limit: "" }));
-  const isRolling = model.model_kind === "scm" || study.model_kind === "scm";
-  const [isAsked, setAsked] = useState(!isRolling);
-  const grid = useGrid(isRolling ? null : model.id, place.wheel, reach, isRim);
+  // A model that rolls over terrain, or is not ours, has no grid.
+  const isRolling = grid.wheels.length === 0;
+  const [isAsked, setAsked] = useState(!isRolling && !isReport);
+  const between = useMemo(() => table.tableOf(grid, place.wheel), [grid, place.wheel]);
   const limit = numberOf(statement.limit);
   // What the last answer at rest has; a model that rolls has no grid, so that only this tells which statements can be asked.
   const [predicted, setPredicted] = useState(/** @type {{ name: string, unit: string }[]} */ ([]));
-  const quantities = measuredQuantities(predicted.length > 0 ? predicted : grid.quantities, rows);
+  const quantities = measuredQuantities(predicted.length > 0 ? predicted : shownQuantities(grid), rows);
   const found = quantities.find((q) => q.name === chosen) ?? quantities[0];
-  const rest = useAtRest(isAsked ? model.id : null, place, reach, isRim, statementOf(found, statement.sign, limit), isRolling, setPredicted);
-  const source = rest.table ?? grid.table;
+  const rest = useAtRest(isAsked ? model.id : null, place, grid.slips, isRim, statementOf(found, statement.sign, limit), isRolling, setPredicted);
+  const source = rest.table ?? between;
   const points = useMemo(() => (source && found ? table.curve(source, found.name, place) : []), [source, found?.name, place]);
   const spread = table.atSlip(points, place.slip);
   const here = spread && { ...spread, slip: place.slip };
@@ -66,39 +69,38 @@ function Calculator(/** @type {{ study: any, model: any, rows: any[], fitted: an
         ${CONDITIONS.map((key) => reach[key][1] > reach[key][0] && html`<${Slider} key=${key} id=${`predict-${key}`} label=${labels[key]} text=${words[key](place[key])} value=${place[key]} range=${reach[key]} isBeyond=${outside.includes(key)} move=${(/** @type {number} */ value) => set({ [key]: value })} />`)}
         <p class=${`reach ${outside.length > 0 ? "beyond" : ""}`} role="status">${outside.length === 0 ? t`Within the fitted range.`
           : t`Beyond the fitted range in ${outside.map((key) => `${labels[key]} (${words[key](ranges[key][0])}${t` to `}${words[key](ranges[key][1])})`).join(", ")}: nothing tells whether the model still holds there.`}</p>
-        <p><label>Quantity <select onChange=${(/** @type {any} */ e) => { setChosen(e.target.value); setStatement({ ...statement, limit: "" }); }}>${quantities.map(({ name }) => html`<option value=${name} selected=${name === found?.name}>${quantityName(name)}</option>`)}</select></label></p>
-        ${found && html`<${Statement} found=${found} statement=${statement} change=${setStatement} answer=${rest.statement} isBusy=${rest.isBusy} isNumber=${limit !== null} />`}
+        ${quantities.length > 0 && html`<p><label>Quantity <select onChange=${(/** @type {any} */ e) => { setChosen(e.target.value); setStatement({ ...statement, limit: "" }); }}>${quantities.map(({ name }) => html`<option value=${name} selected=${name === found?.name}>${quantityName(name)}</option>`)}</select></label></p>`}
+        ${found && !isReport && html`<${Statement} found=${found} statement=${statement} change=${setStatement} answer=${rest.statement} isBusy=${rest.isBusy} isNumber=${limit !== null} />`}
       </div>
       <div>
-        ${isRolling && !isAsked && html`<p>This model rolls over terrain: a prediction takes minutes. <button type="button" onClick=${() => setAsked(true)}>Predict here</button></p>`}
-        <${Failure} error=${rest.error ?? grid.error} />
-        ${found && points.length > 0
-          ? html`<${PredictionChart} quantity=${found} points=${points} here=${here} fitted=${ranges.slip} measured=${near} name=${study.name} />`
-          : (isAsked && !rest.error && html`<p class="empty" aria-busy="true">The program computes the curves …</p>`)}
-        ${source && found && html`<${Values} source=${source} quantities=${quantities} place=${place} />
-          <p class="note" role="status">${rest.table ? t`Computed at this condition with ${rest.draws} draws.` : t`Interpolated between computed conditions; it is computed when the sliders rest.`}</p>`}
+        ${isRolling && isReport && html`<p class="empty">A prediction of this model takes minutes: the page of the service makes it.</p>`}
+        ${isRolling && !isReport && !isAsked && html`<p>This model takes minutes for a prediction. <button type="button" onClick=${() => setAsked(true)}>Predict here</button></p>`}
+        <${Failure} error=${rest.error} />
+        ${found && points.length > 1 && html`<${PredictionChart} quantity=${found} points=${points} here=${here} fitted=${ranges.slip} measured=${near} name=${study.name} />`}
+        ${rest.table && html`<${Refused} source=${rest.table} place=${place} words=${words} />`}
+        ${isReport && between && points.length < 2 && html`<p class="empty" role="status">The model refuses this load or speed, or one beside it.</p>`}
+        ${points.length < 2 && !rest.table && isAsked && !rest.error && html`<p class="empty" aria-busy="true">The program computes the curves …</p>`}
+        ${source && found && points.length > 1 && html`<${Values} source=${source} quantities=${quantities} place=${place} />
+          <p class="note" role="status">${rest.table ? t`Computed at this condition with ${rest.draws} draws.` : isReport ? t`Interpolated between conditions that were computed with ${grid.draws} draws.` : t`Interpolated between computed conditions; it is computed when the sliders rest.`}</p>`}
       </div>
     </div>`;
 }
 
-/** The grid of a wheel, asked once; it has no table until the answer for this wheel is there. */
-function useGrid(/** @type {number | null} */ id, /** @type {string} */ wheel, /** @type {table.Ranges} */ reach, /** @type {boolean} */ isRim) {
-  const [state, setState] = useState(/** @type {{ of: string, table: table.Table | null, quantities: any[], error: any }} */ ({ of: wheel, table: null, quantities: [], error: null }));
-  useEffect(() => {
-    if (id === null) return undefined;
-    let isOver = false;
-    const { plan, fill } = table.gridPlan(wheel, reach, isRim);
-    predict(id, { plan, draws: GRID_DRAWS }).then(
-      ({ runs }) => isOver || setState({ of: wheel, table: fill(runs), quantities: quantitiesOf(runs), error: null }),
-      (error) => isOver || setState({ of: wheel, table: null, quantities: [], error }),
-    );
-    return () => void (isOver = true);
-  }, [id, wheel]);
-  return state.of === wheel ? state : { ...state, table: null, error: null };
+/** What the model refuses, and why: in the place of the curve where no slip is left. */
+function Refused(/** @type {{ source: table.Table, place: table.Place, words: any }} */ { source, place, words }) {
+  const found = table.refused(source);
+  if (!found) return null;
+  const slips = found.spans.map(([from, to]) => (from === to ? slipWords(from) : `${slipWords(from)}${t` to `}${slipWords(to)}`)).join(", ");
+  const { draws, of, reason } = found.refusal;
+  const here = `${words.load(place.load)}, ${words.speed(place.speed)}`;
+  const why = t`${reasonWords(reason)} (at ${draws} of ${of} draws)`;
+  return found.isWhole
+    ? html`<p class="empty" role="status">${t`The model refuses every slip from ${slips} at ${here}: ${why}. Move the sliders, or choose another model.`}</p>`
+    : html`<p class="note" role="status">${t`The model refuses slip ${slips} at ${here}: ${why}.`}</p>`;
 }
 
 /** The curve at a place where the sliders rest, and the probability of a statement there. */
-function useAtRest(/** @type {number | null} */ id, /** @type {table.Place} */ place, /** @type {table.Ranges} */ reach, /** @type {boolean} */ isRim, /** @type {string | null} */ statement, /** @type {boolean} */ isRolling, /** @type {(quantities: { name: string, unit: string }[]) => void} */ onQuantities) {
+function useAtRest(/** @type {number | null} */ id, /** @type {table.Place} */ place, /** @type {number[]} */ slips, /** @type {boolean} */ isRim, /** @type {string | null} */ statement, /** @type {boolean} */ isRolling, /** @type {(quantities: { name: string, unit: string }[]) => void} */ onQuantities) {
   const nothing = { key: "", of: "", table: /** @type {table.Table | null} */ (null), statement: /** @type {any} */ (null), draws: 0, error: /** @type {any} */ (null) };
   const [state, setState] = useState(nothing);
   const of = [id, place.wheel, place.load, place.speed].join(" ");
@@ -107,7 +109,7 @@ function useAtRest(/** @type {number | null} */ id, /** @type {table.Place} */ p
     if (id === null) return undefined;
     let isOver = false;
     const timer = setTimeout(() => {
-      const { plan, fill, here } = table.curvePlan(place, reach, isRim);
+      const { plan, fill, here } = table.curvePlan(place, slips, isRim);
       predict(id, { plan, statements: statement === null ? [] : [statement], ...(isRolling ? { draws: 20 } : {}) }).then(
         ({ runs, draws }) => {
           if (isOver) return;

@@ -3,17 +3,19 @@
 import { html } from "../html.js";
 import { t } from "../language/language.js";
 import { Pending } from "../part/message.js";
+import { NoModel } from "../part/no_model.js";
 import { Table } from "../part/table.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
-import { capital, channelName, digits, parameterName, probability, shown, titled } from "../words/quantity.js";
+import { parameterTitle, shownParameter } from "../words/parameter.js";
+import { capital, channelName, digits, probability, shown } from "../words/quantity.js";
 import { judgements } from "../words/trust.js";
 
 /** @param {{ study: any, model: any }} properties */
 export function Trust({ study, model }) {
   const { answer: provenance, error } = useAnswer(model ? path.provenance(model.id) : null);
   const { answer: diagnostics } = useAnswer(model ? path.diagnostics(model.id) : null);
-  if (!model) return html`<p class="empty">No calibration of this study is finished yet.</p>`;
+  if (!model) return html`<${NoModel} study=${study} />`;
   if (!provenance) return html`<${Pending} answer=${provenance} error=${error} what="the account" />`;
   const line = study.ledger.find((/** @type {any} */ l) => l.calibration === model.id) ?? null;
   return html`
@@ -52,7 +54,7 @@ function Data(/** @type {{ diagnostics: any }} */ { diagnostics }) {
     const value = (/** @type {number | null} */ v) => digits(v === null ? null : v * quantity.scale);
     return [`${channelName(c.channel)} ${quantity.unit}`, c.data, value(c.error_sd), value(c.prior_predictive_sd), digits(c.information, 2), digits(c.chi_square?.chi_square), digits(c.chi_square?.degrees_of_freedom), p(c.chi_square?.p)];
   });
-  const parameters = diagnostics.parameters.map((/** @type {any} */ q) => [parameterName(q.name, q.unit), digits(q.contraction, 2), p(q.conflict_p), q.at_bound ? t`at its bound` : ""]);
+  const parameters = diagnostics.parameters.map((/** @type {any} */ q) => [shownParameter(q).name, digits(q.contraction, 2), p(q.conflict_p), q.at_bound ? t`at its bound` : ""]);
   return html`
     <h2>What the data tell</h2>
     <${Table} label="Channels" head=${[t`channel`, t`rows`, t`error sd`, t`prior spread`, t`information`, t`chi-square`, t`expected`, "p"]} rows=${channels} numbers=${[1, 2, 3, 4, 5, 6, 7]} />
@@ -73,8 +75,8 @@ function verified(/** @type {any} */ { results, confirmed, workers }) {
 function Refused(/** @type {{ rejections: any }} */ { rejections }) {
   if (rejections.prior_draws === 0) return null;
   if (rejections.prior_refused === 0) return html`<p>The model accepted every draw from the prior (${rejections.prior_draws}).</p>`;
-  const cell = (/** @type {any} */ bin, /** @type {number} */ scale) => {
-    const end = (/** @type {number | null} */ v) => (v === null ? "" : digits(v * scale, 3));
+  const cell = (/** @type {any} */ bin, /** @type {(value: number) => number} */ of) => {
+    const end = (/** @type {number | null} */ v) => (v === null ? "" : digits(of(v), 3));
     const refused = /** @type {number[]} */ (Object.values(bin.refused)).reduce((a, b) => a + b, 0);
     return html`<b>${refused}</b> of ${bin.draws}<br /><span class="note">${end(bin.from)} to ${end(bin.to)}</span>`;
   };
@@ -82,5 +84,5 @@ function Refused(/** @type {{ rejections: any }} */ { rejections }) {
     <h2>Where the model refuses parameters</h2>
     <p>It refused ${rejections.prior_refused} of ${rejections.prior_draws} draws from the prior${rejections.region ? t`, most of them in one region (${probability(rejections.region.p)} by chance)` : ""}.</p>
     <${Table} label="Rejections by region of the prior" head=${[t`parameter`, t`lowest fifth`, t`second`, t`middle`, t`fourth`, t`highest fifth`]}
-      rows=${rejections.parameters.map((/** @type {any} */ q) => [titled(parameterName(q.name, q.unit), shown(q.unit).unit), ...q.bins.map((/** @type {any} */ bin) => cell(bin, shown(q.unit).scale))])} />`;
+      rows=${rejections.parameters.map((/** @type {any} */ q) => [parameterTitle(q), ...q.bins.map((/** @type {any} */ bin) => cell(bin, shownParameter(q).of))])} />`;
 }

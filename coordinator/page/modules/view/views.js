@@ -4,7 +4,6 @@
 import { html } from "../html.js";
 import { t } from "../language/language.js";
 import { Later } from "../part/later.js";
-import { isReport } from "../rest/answers.js";
 
 /** @typedef {{ name: string, title: string, load: () => Promise<any> }} View */
 
@@ -15,8 +14,7 @@ export const VIEWS = [
   { name: "failures", title: t`Where it fails`, load: () => import("./failures.js").then((module) => module.Failures) },
   { name: "effects", title: t`Missing effect`, load: () => import("./missing_effect.js").then((module) => module.MissingEffect) },
   { name: "posterior", title: t`Posterior`, load: () => import("./posterior.js").then((module) => module.Posterior) },
-  // A report can ask nobody for a prediction.
-  ...(isReport ? [] : [{ name: "predict", title: t`Predict`, load: () => import("./predict.js").then((module) => module.Predict) }]),
+  { name: "predict", title: t`Predict`, load: () => import("./predict.js").then((module) => module.Predict) },
   { name: "errors", title: t`Error falls`, load: () => import("./errors.js").then((module) => module.Errors) },
   { name: "trust", title: t`How far to trust it`, load: () => import("./trust.js").then((module) => module.Trust) },
   { name: "live", title: t`Live`, load: () => import("./live.js").then((module) => module.Live) },

@@ -2,7 +2,8 @@
 
 import { t, translated } from "../language/language.js";
 import { runWords } from "./ledger.js";
-import { capital, channelName, CHANNELS, digits, errorWords, meanAndSd, minus, parameterName, shown, unitOf, words } from "./quantity.js";
+import { meanAndSpread, shownParameter } from "./parameter.js";
+import { capital, channelName, CHANNELS, digits, errorWords, minus, shown, unitOf, words } from "./quantity.js";
 
 /** @typedef {{ study: any, line: any, diagnostics: any }} Side line: of the error ledger of its current model. diagnostics: of that model */
 
@@ -44,16 +45,15 @@ function parameters(/** @type {Side[]} */ sides) {
   const names = [...new Set(sides.flatMap(({ line }) => Object.keys(line?.parameters ?? {})))];
   return names.map((name) => {
     const unit = units.get(name);
-    const { unit: word, scale } = unit === undefined ? { unit: "SI", scale: 1 } : shown(unit);
+    const called = shownParameter({ name, unit });
+    const word = unit === undefined ? "SI" : called.unit;
     const values = sides.map(({ line }) => line?.parameters[name]);
     const cells = values.map((value) => {
-      if (!value) return "–";
-      const { mean, sd } = meanAndSd(value.mean * scale, value.sd * scale);
-      return `${mean} ± ${sd}${word === "1" ? "" : ` ${word}`}`;
+      return value ? `${meanAndSpread(called, value.mean, value.sd)}${word === "" ? "" : ` ${word}`}` : "–";
     });
     const [a, b] = values;
     const sd = a && b ? Math.max(a.sd, b.sd) : 0;
-    return [parameterName(name, unit), ...cells, sd > 0 ? `${minus(digits((b.mean - a.mean) / sd, 2))} sds` : ""];
+    return [called.name, ...cells, sd > 0 ? `${minus(digits((b.mean - a.mean) / sd, 2))} sds` : ""];
   });
 }
 

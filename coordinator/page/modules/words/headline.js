@@ -1,7 +1,8 @@
 // The headline of a study: what was found, in one sentence with the error before and after it.
 
 import { t } from "../language/language.js";
-import { capital, channelName, errorWords, meanAndSd, parameterName, probability, shown, unitOf, words } from "./quantity.js";
+import { meanAndSpread, shownParameter } from "./parameter.js";
+import { capital, channelName, errorWords, probability, shown, unitOf, words } from "./quantity.js";
 
 /**
  * @typedef {{ channel: string, use: "fit" | "holdout", unit: string, before: number | null, now: number, noise: number | null }} ErrorChange
@@ -93,9 +94,8 @@ export function explanations({ already_added: added, leading }) {
 /** `shear modulus 9.4 ± 0.6 mm`: the parameters of an added effect. */
 export function strengthWords(/** @type {any} */ { strengths }) {
   return strengths.map((/** @type {any} */ { name, unit, mean, sd }) => {
-    const { unit: word, scale } = shown(unit);
-    const value = meanAndSd(mean * scale, sd * scale);
-    return `${parameterName(name.split(".").slice(1).join(".") || name, unit)} ${value.mean} ± ${value.sd}${word === "1" ? "" : ` ${word}`}`;
+    const called = shownParameter({ name: name.split(".").slice(1).join(".") || name, unit });
+    return `${called.name} ${meanAndSpread(called, mean, sd)}${called.unit === "" ? "" : ` ${called.unit}`}`;
   }).join(", ");
 }
 

@@ -11,7 +11,7 @@ const DERIVED = /** @type {Record<string, string>} */ ({
 /** What a condition states already, or what only a slope has. */
 const HIDDEN = ["slip", "wheel_load_n", "sled_speed_m_s", "slip_angle_deg", "gravity_m_s2", "slope_deg", "stuck", "net_pull_n"];
 
-/** The quantities of a predicted run that are shown, with their units in SI. @returns {{ name: string, unit: string }[]} */
+/** The quantities of a predicted run, or of a grid, that are shown, with their units in SI. @returns {{ name: string, unit: string }[]} */
 export const shownQuantities = (/** @type {any} */ run) => run.quantities.filter((/** @type {any} */ q) => !HIDDEN.includes(q.name)).map((/** @type {any} */ q) => ({ name: q.name, unit: q.unit }));
 
 /** The name of a quantity as words, without its unit. */

@@ -1,7 +1,8 @@
 // How far to trust a calibration, in one line for each question: the sampler, the data, the priors, the predictions.
 
 import { t } from "../language/language.js";
-import { channelName, parameterName } from "./quantity.js";
+import { shownParameter } from "./parameter.js";
+import { channelName } from "./quantity.js";
 
 /** A probability below which chance does not explain what is seen. */
 const LEVEL = 0.01;
@@ -10,7 +11,7 @@ const LITTLE = 0.1;
 
 /** @typedef {{ question: string, level: "good" | "fair" | "poor", text: string }} Judgement */
 
-const named = (/** @type {any} */ { name, unit }) => parameterName(name, unit);
+const named = (/** @type {any} */ parameter) => shownParameter(parameter).name;
 
 /** `a, b and c`, of many the first. */
 function list(/** @type {string[]} */ names) {

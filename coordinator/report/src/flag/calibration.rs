@@ -15,6 +15,7 @@ use result::point_estimate::fitted;
 use result::table::predictive::discrepancy_posterior;
 use result::table::refusal::Refusal;
 use result::words::number;
+use result::words::rejection::rejection_counts;
 
 /// Ratio of posterior to prior standard deviation, in the sampler's coordinate, above which the data are called uninformative.
 const NO_CONTRACTION: f64 = 0.95;
@@ -103,8 +104,8 @@ pub(crate) fn flags(calibration: &FinishedCalibration, diagnostics: &Diagnostics
     );
     if rejected as f64 > MANY_REJECTED * evaluations as f64 {
         let mut text = format!(
-            "the model rejected {rejected} of {evaluations} parameter vectors ({}): much of the prior lies outside its validity",
-            number::counts(&calibration.rejections).join(", ")
+            "the model rejected {rejected} of {evaluations} parameter vectors because {}: much of the prior lies outside its validity",
+            number::list(&rejection_counts(&calibration.rejections))
         );
         if let Some(words) = diagnostics.rejections.words() {
             text.push_str("; ");

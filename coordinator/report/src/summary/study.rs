@@ -166,7 +166,7 @@ mod tests {
             other_models: vec![other],
             ..fixture::calibration().into()
         };
-        assert!(crate::study_file::file(&study, crate::StudyFile::Figures(2)).is_some());
+        assert!(crate::study_file::file(&study, &[], crate::StudyFile::Figures(2)).is_some());
         assert_eq!(summary(&study).models, study.model_comparison());
     }
 }

@@ -10,6 +10,7 @@ use shared::parameters::behind;
 use crate::finished_calibration::FinishedCalibration;
 use crate::words::number;
 use crate::words::probability::{LEVEL, p_words};
+use crate::words::rejection::rejection_counts;
 
 /// Rejected parameter vectors and failed leases.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -182,17 +183,33 @@ fn prior_region(
 }
 
 impl RegionSide {
-    /// States the bounds of the parameter, for example `k_c below -2.0e8 N/m^2.1`.
+    /// States the bounds of the parameter, for example `k_c below -2.0e8 N/m^2.1`; of a logarithm those of the quantity, too, such as
+    /// `log10_p_ref below 3.10 (1.26 kPa)`.
     fn words(&self) -> String {
-        let unit = behind(&self.unit);
-        let bound =
-            |word: &str, x: Option<f64>| x.map(|x| format!("{word} {}{unit}", number::significant(x, 3)));
+        let value = |x: f64| match self.unit.strip_prefix("log10 ") {
+            Some(base) => format!("{} ({})", number::significant(x, 3), antilogarithm(x, base)),
+            None => format!("{}{}", number::significant(x, 3), behind(&self.unit)),
+        };
+        let bound = |word: &str, x: Option<f64>| x.map(|x| format!("{word} {}", value(x)));
         let bounds: Vec<String> = bound("above", self.above)
             .into_iter()
             .chain(bound("below", self.below))
             .collect();
         format!("{} {}", self.parameter, number::list(&bounds))
     }
+}
+
+/// Formats the quantity of a decimal logarithm; a pressure in kPa, as the page shows it.
+fn antilogarithm(x: f64, base: &str) -> String {
+    let (scale, unit) = match base {
+        "Pa" => (1e-3, "kPa"),
+        base => (1.0, base),
+    };
+    format!(
+        "{}{}",
+        number::significant(scale * libm::pow(10.0, x), 3),
+        behind(unit)
+    )
 }
 
 impl RejectionDiagnostics {
@@ -208,7 +225,7 @@ impl RejectionDiagnostics {
             self.prior_refused,
             self.prior_draws,
             number::list(&sides),
-            number::counts(&region.refused).join(", "),
+            number::list(&rejection_counts(&region.refused)),
             percent(region.draws, self.prior_draws),
             percent(refused, region.draws),
             p_words(region.p)
@@ -270,7 +287,7 @@ mod tests {
         assert!((side[0].below.unwrap() - 0.96).abs() < 1e-12);
         assert_eq!(
             found.words().unwrap(),
-            "100 % of the 40 rejections among 200 draws from the prior have n below 0.960: no_support 40; this region holds 20 % of the prior, and 100 % of it is rejected (p < 1e-12 by chance)"
+            "100 % of the 40 rejections among 200 draws from the prior have n below 0.960: the soil does not carry the load (no_support, 40); this region holds 20 % of the prior, and 100 % of it is rejected (p < 1e-12 by chance)"
         );
         let n = &found.parameters[1];
         let counts: Vec<(u64, u64)> = n
@@ -287,6 +304,21 @@ mod tests {
             .map(|p| p.bins.iter().map(|b| b.faults).sum())
             .collect();
         assert_eq!(faults, [1, 1, 1]);
+    }
+
+    #[test]
+    fn a_bound_of_a_logarithm_has_its_quantity() {
+        let side = |parameter: &str, unit: &str, below: f64| RegionSide {
+            parameter: parameter.into(),
+            unit: unit.into(),
+            above: None,
+            below: Some(below),
+        };
+        assert_eq!(
+            side("log10_p_ref", "log10 Pa", 3.1).words(),
+            "log10_p_ref below 3.10 (1.26 kPa)"
+        );
+        assert_eq!(side("n", "1", 0.96).words(), "n below 0.960");
     }
 
     #[test]

@@ -1,7 +1,5 @@
 //! Formats of numbers, counts, lists and durations for people.
 
-use std::collections::BTreeMap;
-
 /// Shown in place of a missing number.
 pub const NONE: &str = "\u{2013}";
 
@@ -107,14 +105,6 @@ pub fn as_written(x: f64) -> String {
 /// Formats a count with its noun: `1 run`, `2 runs`.
 pub fn count(n: usize, noun: &str) -> String {
     format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
-}
-
-/// Formats counts by name: `no_support 990`.
-pub fn counts(counts: &BTreeMap<String, u64>) -> Vec<String> {
-    counts
-        .iter()
-        .map(|(name, count)| format!("{name} {count}"))
-        .collect()
 }
 
 /// Joins words as in a sentence: `a, b and c`.

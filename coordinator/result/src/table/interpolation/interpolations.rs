@@ -10,7 +10,7 @@ use super::interpolated::{Interpolated, InterpolatedOver};
 use super::surface::Surfaces;
 
 /// The holdout measurements of an experiment, interpolated from the fitted ones.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Interpolations {
     values: BTreeMap<(usize, Channel), Interpolated>,
     missing: BTreeMap<(usize, Channel), String>,
