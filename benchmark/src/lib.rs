@@ -4,7 +4,7 @@
 //! - [`damaged_input`]: every reader of files and messages, fed damaged inputs.
 //! - [`hidden_effect`]: how often the missing effect is found.
 //! - [`sbc`]: simulation-based calibration of the whole chain.
-//! - [`posterior_use`]: predictions of unseen conditions, and decisions over synthetic campaigns.
+//! - [`posterior_use`]: predictions of unseen conditions, decisions over synthetic campaigns, and recordings.
 //! - [`farm_load`]: jobs and messages for a farm whose model costs nothing.
 //! - [`calibration`]: a calibration on one thread. [`parallel`]: work on all threads. [`process`]: processor time and memory.
 //!   [`error`]: the error of a study.

@@ -4,3 +4,4 @@ mod decision;
 mod fuzz;
 mod hidden_effect;
 mod sbc;
+mod stream;

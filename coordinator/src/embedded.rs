@@ -3,6 +3,8 @@
 use std::future::Future;
 use std::sync::Arc;
 
+use prediction::recording::CompiledModel;
+use shared::channel::Channel;
 use shared::exchange::{ExchangeRequest, ExchangeResponse, WorkResult};
 use shared::model::{ExternalModel, ModelVariant};
 use shared::outcome::Outcome;
@@ -189,6 +191,18 @@ impl Evaluate {
         worker::model::CompiledVariant::new(variant, &models.0)
             .map(Evaluate)
             .map_err(|e| e.to_string())
+    }
+
+    /// Returns the model of the only condition of a variant, as a recording is followed by it.
+    pub fn at_one_condition(self) -> CompiledModel {
+        Box::new(move |theta| match self.evaluate(theta) {
+            Outcome::Evaluated(observables) => {
+                let value = |channel| observables.channel(channel).first().copied().unwrap_or(f64::NAN);
+                Ok(Some(Channel::ALL.map(value)))
+            }
+            Outcome::Rejected(_) => Ok(None),
+            Outcome::Fault(fault) => Err(fault.message),
+        })
     }
 
     /// Simulates every condition at one parameter vector.

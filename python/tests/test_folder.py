@@ -67,6 +67,12 @@ def test_conditions_of_ones_own_are_predicted_with_their_probabilities(study: gr
     stay = '[[decision.options]]\nname = "stay"\nloss = "900"\n'
     file.write_text(f'[decision]\nloss = "energy_j_m"\n{climb}{stay}', encoding="utf-8")
     assert study.decide(file)["best"] == "climb"
+    recording = tmp_path / "recording.csv"
+    rows = "".join(f"{i / 10},0.2,{20 + i % 3},{4 + 0.1 * (i % 4)}\n" for i in range(60))
+    recording.write_text(f"t_s,slip,drawbar_pull_n,torque_n_m\n{rows}", encoding="utf-8")
+    followed = study.stream(recording, parameters=["friction_angle_deg"])
+    assert [time["t_s"] for time in followed["times"]] == [0.9, 1.9, 2.9, 3.9, 4.9, 5.9]
+    assert followed["times"][0]["parameters"][0]["name"] == "friction_angle_deg"
 
 
 def test_a_population_has_the_units_that_the_service_states(study: grouser.Study) -> None:

@@ -139,6 +139,19 @@ pub struct NewDecision {
     pub draws: Option<usize>,
 }
 
+/// `POST /v1/calibrations/ID/stream`.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct NewRecording {
+    /// Samples at 10 Hz: CSV text with `t_s`, `slip` and measured channels; `wheel_load_n`, `sled_speed_m_s` and `slip_angle_deg` where they
+    /// are not those of the fitted runs.
+    pub recording: String,
+    /// Wheel, if the fitted runs have several.
+    pub wheel: Option<String>,
+    /// Parameters that may vary; by default, those of the soil.
+    pub parameters: Vec<String>,
+}
+
 /// Answer to further runs.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct RunsAdded {

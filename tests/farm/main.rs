@@ -49,6 +49,7 @@ mod spatial;
 mod square_root;
 mod store;
 mod stored_results;
+mod stream;
 mod study;
 mod summary_contract;
 mod validate;

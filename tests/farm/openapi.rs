@@ -112,7 +112,7 @@ fn the_examples_of_bodies_work_in_their_order() {
         .collect();
     let first = ["create_experiment", "create_calibration"];
     // These need the posterior.
-    let last = ["predict", "decide", "follow"];
+    let last = ["predict", "decide", "follow", "stream"];
     examples.sort_by_key(|operation| {
         let is_last = last.contains(&operation.id());
         let place = first.iter().position(|id| *id == operation.id());

@@ -46,6 +46,8 @@
 //! - [`gaussian_process`]: interpolation of measurements, without a model. [`discrepancy`]: the misfit of a model between them.
 //! - [`emulated`]: the sampler of expensive models. [`numerical_noise`]: the scatter of a rough model.
 //! - [`response_surface`]: polynomials of the model's outputs over a posterior.
+//! - [`tracking`]: parameters that vary in time, through a recording. Its samples come one after another, so that it takes the model as a
+//!   function.
 //! - [`diagnostics`]: summaries and tests of draws and residuals.
 
 pub mod diagnostics;
@@ -62,6 +64,7 @@ pub mod response_surface;
 mod round;
 mod tell;
 pub mod tmcmc;
+pub mod tracking;
 
 pub use emulated::{EmulatedSampler, EmulatorRecord, EmulatorRound, FinalWeights};
 pub use phase::EvaluationCount;

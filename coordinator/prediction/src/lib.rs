@@ -9,7 +9,9 @@
 //! - [`balance`]: the slip at which a wheel climbs a slope.
 //! - [`drawn_model`](mod@drawn_model): the model with its draws, for programs that simulate it themselves.
 //! - [`follow`]: what further runs change. [`surprise`]: runs that contradict what was expected of them.
-//! - [`prediction`]: predictions of a plan. [`grid`]: predictions over a grid of conditions. [`decision`]: expected losses of options, and what one more run is worth.
+//! - [`recording`]: the parameters of the soil through a recording, and its changes.
+//! - [`prediction`]: predictions of a plan. [`grid`]: predictions over a grid of conditions. [`decision`]: expected losses of options, and
+//!   what one more run is worth.
 
 pub mod balance;
 pub mod beyond;
@@ -23,6 +25,7 @@ pub mod grid;
 pub mod plan;
 pub mod prediction;
 pub mod quantity_value;
+pub mod recording;
 pub mod spread;
 pub mod statement;
 pub mod surprise;

@@ -21,6 +21,7 @@ mod schema;
 mod serve;
 mod shell;
 mod shutdown;
+mod stream;
 mod token;
 mod validate;
 mod verbs;
@@ -54,6 +55,7 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
         CoordinatorCommand::Predict(config) => predict::predict(&config).await,
         CoordinatorCommand::Decide(config) => predict::decide(&config).await,
         CoordinatorCommand::Watch(config) => watch::watch(&config).await,
+        CoordinatorCommand::Stream(config) => stream::stream(config).await,
         CoordinatorCommand::Discover(discover) => growth::discover(&discover).await,
         CoordinatorCommand::Extend(extend) => growth::extend(&extend).await,
         CoordinatorCommand::AddRuns(runs) => growth::add_runs(&runs).await,

@@ -38,7 +38,7 @@ pub(super) async fn predict(config: &PredictArguments) -> anyhow::Result<()> {
 
 pub(super) async fn decide(config: &DecideArguments) -> anyhow::Result<()> {
     if config.format == PredictionFormat::Csv {
-        bail!("--format csv is of predictions: a decision is printed as text or json");
+        bail!("--format csv is of predictions and recordings: a decision is printed as text or json");
     }
     let place = Place::open(&config.source).await?;
     let id = target(&place, config.id).await?;

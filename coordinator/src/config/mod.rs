@@ -4,7 +4,7 @@
 //! - `client`: what a service asks for.
 //! - `library`: where libraries that belong to the program lie.
 //! - `model`: models that are not ours. `target`: which calibration, and where.
-//! - `predict`: arguments of `coordinator predict`, `decide` and `watch`.
+//! - `predict`: arguments of `coordinator predict`, `decide`, `watch` and `stream`.
 //! - `scale`, `validate`: arguments of `coordinator scale` and `coordinator validate`.
 //! - `store`: where a store is kept, copies of it, its tokens.
 
@@ -28,7 +28,7 @@ use crate::schema::FileKind;
 pub use client::ClientArguments;
 pub use library::beside_program;
 pub use model::ModelArguments;
-pub use predict::{DecideArguments, PredictArguments, PredictionFormat, WatchArguments};
+pub use predict::{DecideArguments, PredictArguments, PredictionFormat, StreamArguments, WatchArguments};
 pub use scale::{EngineKind, ScaleArguments};
 pub use store::{BackupArguments, CopyStoreArguments, StoreArguments, TokenCommand};
 pub use target::{SourceArguments, TargetArguments};
@@ -85,6 +85,8 @@ pub enum CoordinatorCommand {
     Decide(DecideArguments),
     /// Follow a campaign: after each run of a file, the posterior, what is missing, and the run to make next.
     Watch(WatchArguments),
+    /// Follow a recording from standard input: the parameters of the soil after each second, and changes of the soil.
+    Stream(StreamArguments),
     /// Search for an effect that the model of a calibration is missing.
     Discover(DiscoverArguments),
     /// Extend a study by a calibration with one additional effect.

@@ -1,4 +1,4 @@
-//! Settings of `coordinator predict` and `coordinator decide`.
+//! Settings of `coordinator predict`, `decide`, `watch` and `stream`.
 
 use std::path::PathBuf;
 
@@ -66,13 +66,29 @@ pub struct WatchArguments {
     pub once: bool,
 }
 
-/// Form in which predictions and decisions are printed.
+/// Follow a recording from standard input.
+#[derive(Debug, Args)]
+pub struct StreamArguments {
+    #[command(flatten)]
+    pub target: TargetArguments,
+    /// A parameter that may vary; may be repeated. By default, all of the soil.
+    #[arg(long, value_name = "NAME")]
+    pub parameter: Vec<String>,
+    /// Wheel, if the fitted runs have several.
+    #[arg(long, value_name = "NAME")]
+    pub wheel: Option<String>,
+    /// What is printed: a line for each second as text or JSON, or a row for each second and parameter.
+    #[arg(long, value_enum, default_value_t = PredictionFormat::Text)]
+    pub format: PredictionFormat,
+}
+
+/// Form in which predictions, decisions and recordings are printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum PredictionFormat {
     /// Tables and sentences.
     Text,
     /// All numbers as JSON.
     Json,
-    /// A row for each run and quantity; of predictions alone.
+    /// A row for each run and quantity, or for each time and parameter; not of decisions.
     Csv,
 }

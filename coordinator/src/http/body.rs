@@ -21,7 +21,7 @@ const EXCHANGE: &str = "/v1/work/exchange";
 const BODY_TIME: Duration = Duration::from_secs(120);
 
 /// Returns the largest body of a route `[bytes]`. Large routes are the results of a large batch, the files of a large experiment, a table
-/// of measurements, a job to check with its experiment, a job with the draws that it names, further runs, an effect file for a job, lists of runs, plans and decisions. Other bodies are as
+/// of measurements, a job to check with its experiment, a job with the draws that it names, further runs, a recording, an effect file for a job, lists of runs, plans and decisions. Other bodies are as
 /// small as the addition of an effect from the catalogue.
 fn limit(path: &str) -> usize {
     match path.rsplit('/').next() {
@@ -30,7 +30,7 @@ fn limit(path: &str) -> usize {
         Some("experiments" | "check") => 64 << 20,
         Some("import" | "guess") => 32 << 20,
         Some("calibrations" | "runs") => 16 << 20,
-        Some("follow") => 16 << 20,
+        Some("follow" | "stream") => 16 << 20,
         Some("extend" | "what-if" | "predict" | "decide") => 1 << 20,
         _ => 64 << 10,
     }

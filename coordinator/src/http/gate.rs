@@ -52,11 +52,12 @@ fn changes_nothing(method: &Method, path: &str) -> bool {
     [Method::GET, Method::HEAD].contains(method) || method == Method::POST && asks_of_a_calibration(path)
 }
 
-/// Returns whether a path is `/v1/calibrations/ID/` and `predict`, `decide` or `follow`.
+/// Returns whether a path is `/v1/calibrations/ID/` and `predict`, `decide`, `follow` or `stream`.
 fn asks_of_a_calibration(path: &str) -> bool {
     let rest = path.strip_prefix("/v1/calibrations/");
     let parts = rest.and_then(|rest| rest.split_once('/'));
-    parts.is_some_and(|(id, verb)| !id.is_empty() && ["predict", "decide", "follow"].contains(&verb))
+    parts
+        .is_some_and(|(id, verb)| !id.is_empty() && ["predict", "decide", "follow", "stream"].contains(&verb))
 }
 
 #[cfg(test)]
@@ -70,6 +71,7 @@ mod tests {
             (Method::POST, "/v1/calibrations/3/predict", true),
             (Method::POST, "/v1/calibrations/3/decide", true),
             (Method::POST, "/v1/calibrations/3/follow", true),
+            (Method::POST, "/v1/calibrations/3/stream", true),
             (Method::DELETE, "/v1/calibrations/3/predict", false),
             (Method::POST, "/v1/calibrations/3/cancel", false),
             (Method::PUT, "/v1/effects/predict", false),

@@ -5,8 +5,9 @@ use axum::extract::State;
 use axum::response::IntoResponse;
 use job::PlannedCondition;
 use prediction::follow::Followed;
+use prediction::recording::FollowedRecording;
 use prediction::{DecisionAnswer, Prediction, PredictionGrid, drawn_model};
-use shared::api::{ErrorBody, NewDecision, NewPrediction, NewRuns};
+use shared::api::{ErrorBody, NewDecision, NewPrediction, NewRecording, NewRuns};
 use shared::model::DrawnModel;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -23,6 +24,7 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(decide))
         .routes(routes!(drawn))
         .routes(routes!(follow))
+        .routes(routes!(stream))
 }
 
 /// Predicts conditions of one's own.
@@ -128,4 +130,24 @@ async fn follow(
     Body(asked): Body<NewRuns>,
 ) -> Result<Json<Followed>, HttpError> {
     Ok(Json(service.follow(id, asked).await?))
+}
+
+/// Follows a recording.
+///
+/// The parameters of the soil after each second of a recording at 10 Hz, with intervals that forget by a walk whose size is inferred, and
+/// the changes of the soil with their times. What is said of a time rests on the samples until then alone. Nothing is stored. 422 of a model
+/// that does not move steadily.
+#[utoipa::path(post, path = "/calibrations/{id}/stream", operation_id = "stream", tag = "results",
+    params(("id" = i64, Path, description = "id of a calibration with a posterior")), request_body = NewRecording, responses(
+    (status = 200, description = "the parameters in time, and the changes", body = FollowedRecording),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody, description = "the calibration is not finished, has no draws, or its model cannot be evaluated here"),
+    (status = 422, body = ErrorBody, description = "a row or the name of a parameter is malformed, or the model is too slow"),
+))]
+async fn stream(
+    State(service): State<Service>,
+    Id(id): Id,
+    Body(asked): Body<NewRecording>,
+) -> Result<Json<FollowedRecording>, HttpError> {
+    Ok(Json(service.stream(id, asked).await?))
 }

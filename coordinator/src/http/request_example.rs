@@ -12,6 +12,12 @@ const FURTHER_RUNS: &str =
 more,w,s,0.25,80.0,0.015,11.9,1.62,0.0071,fit
 ";
 
+/// Two samples of a recording, which has a row each tenth of a second.
+const RECORDING: &str = "t_s,slip,wheel_load_n,sled_speed_m_s,drawbar_pull_n,torque_n_m,sinkage_m
+0.0,0.2,100,0.016,11.2,2.31,0.0082
+0.1,0.2,100,0.016,10.1,2.27,0.0085
+";
+
 /// Text of an effect file.
 const EFFECT: &str = "name = \"stiffer_pull\"
 summary = \"the drawbar pull is larger by a constant share\"
@@ -80,6 +86,7 @@ pub(super) fn request_example(operation: &str) -> Option<Value> {
         "predict" => json!({"sweep": "slip=0.05:0.6:12", "statements": ["drawbar_pull_n > 12"]}),
         "decide" => json!({ "file": DECISION }),
         "add_runs" | "follow" => json!({ "runs": FURTHER_RUNS }),
+        "stream" => json!({ "recording": RECORDING }),
         "add_effect" => json!({ "text": EFFECT }),
         "import_table" => json!({"name": "sand.csv", "content_base64": TABLE_BASE64, "map": MAP}),
         "guess_import_map" => json!({"name": "sand.csv", "content_base64": TABLE_BASE64, "sheet": null}),

@@ -15,6 +15,7 @@
 //! - `follow`: further runs of a campaign while it lasts.
 //! - `job_check`: a job before it is submitted, with its cost.
 //! - `predictions`: conditions of one's own and decisions; `simulation`: their simulations in this process.
+//! - `recording`: recordings that are followed.
 //! - `study_changes`: notifications of changes of studies.
 
 mod announcement;
@@ -28,6 +29,7 @@ mod growth;
 mod handle;
 mod job_check;
 mod predictions;
+pub(crate) mod recording;
 mod recovery;
 mod removal;
 mod result_cache;

@@ -162,6 +162,31 @@ class Study:
         answer: dict[str, Any] = self._place.post(f"calibrations/{by}/decide", body)
         return answer
 
+    def stream(
+        self,
+        recording: str | os.PathLike[str],
+        *,
+        parameters: Sequence[str] = (),
+        wheel: str | None = None,
+        calibration: int | None = None,
+    ) -> dict[str, Any]:
+        """A recording that is followed: the parameters of the soil after each second, and its changes (docs/prediction.md).
+
+        Args:
+            recording: a CSV file with samples at 10 Hz: ``t_s``, ``slip`` and measured channels.
+            parameters: those that may vary; by default, those of the soil.
+            wheel: the wheel, if the fitted runs have several.
+            calibration: the calibration that is taken; by default, that of the current model.
+
+        Raises:
+            GrouserError: the recording is malformed; the message is the coordinator's.
+        """
+        by = self.current.id if calibration is None else calibration
+        text = Path(recording).read_text(encoding="utf-8")
+        body = {"recording": text, "parameters": list(parameters), "wheel": wheel}
+        answer: dict[str, Any] = self._place.post(f"calibrations/{by}/stream", body)
+        return answer
+
     def calibration(self, id: int) -> Calibration:
         """One of the calibrations.
 

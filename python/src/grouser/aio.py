@@ -197,6 +197,19 @@ class Study:
         """As :meth:`grouser.Study.decide`."""
         return await asyncio.to_thread(self.sync.decide, file, draws=draws, calibration=calibration)
 
+    async def stream(
+        self,
+        recording: str | os.PathLike[str],
+        *,
+        parameters: Sequence[str] = (),
+        wheel: str | None = None,
+        calibration: int | None = None,
+    ) -> dict[str, Any]:
+        """As :meth:`grouser.Study.stream`."""
+        return await asyncio.to_thread(
+            self.sync.stream, recording, parameters=parameters, wheel=wheel, calibration=calibration
+        )
+
     async def predictions(self) -> Table:
         """As :meth:`grouser.Study.predictions`."""
         return await asyncio.to_thread(self.sync.predictions)

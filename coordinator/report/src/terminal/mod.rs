@@ -8,6 +8,7 @@
 //! - `study`: the complete text of a study; `models`: its compared models; `ledger`: the errors of its calibrations.
 //! - `calibration`: one calibration; `comparison`: its rows and errors; `diagnostics`: its diagnostics.
 //! - `followed`: a campaign that is followed.
+//! - `recording`: a recording that is followed.
 //! - `prediction`: conditions of one's own; `decision`: options by their expected losses.
 //! - `rig`: offsets of sessions, tarings and operators.
 //! - [`discovery`]: a search for a missing effect. `validation`: the levels of a factor, each left out in turn.
@@ -27,6 +28,7 @@ mod ledger;
 mod list;
 mod models;
 mod prediction;
+mod recording;
 mod rig;
 mod run_end;
 mod specification;
@@ -45,6 +47,7 @@ pub use ending::ending;
 pub use followed::followed;
 pub use list::list;
 pub use prediction::{prediction, prediction_csv};
+pub use recording::{RECORDING_TITLES, recorded_rows, recorded_time, recording_end};
 pub use rig::rig;
 pub use run_end::run_end;
 pub use specification::specification;
