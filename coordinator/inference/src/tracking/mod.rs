@@ -12,7 +12,7 @@
 //! - [`change`]: from weights to changes. [`noise`]: size and correlation of the noise of samples.
 //!
 //! # Source
-//! Adams & MacKay 2007, arXiv:0710.3742 (times of change); Raftery, Kárný & Ettler 2010, Technometrics 52:52,
+//! Adams & `MacKay` 2007, arXiv:0710.3742 (times of change); Raftery, Kárný & Ettler 2010, Technometrics 52:52,
 //! doi:10.1198/TECH.2009.08104 (weights that are forgotten); Nørgaard, Poulsen & Ravn 2000, Automatica 36:1627,
 //! doi:10.1016/S0005-1098(00)00089-3 (linearisation by differences); García-Fernández et al. 2015, IEEE Trans. Signal Process. 63:5561,
 //! doi:10.1109/TSP.2015.2454485 (linearisation over the posterior).
