@@ -1,9 +1,6 @@
 //! The distribution of one filter: normal in the scores of the prior.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
-use statistics::prior::LN_SQRT_TAU;
-
-use super::linearisation::Linearisation;
+use nalgebra::{DMatrix, DVector};
 
 /// A normal distribution of the scores.
 #[derive(Debug, Clone)]
@@ -56,33 +53,6 @@ impl Gaussian {
             }
         }
         renewed
-    }
-
-    /// Returns the distribution given measured values, and the log-density of these; `None` where rounding leaves no covariance.
-    ///
-    /// # Arguments
-    /// - `variances`: of the measured values.
-    pub(super) fn updated(
-        &self,
-        model: &Linearisation,
-        values: &DVector<f64>,
-        variances: &DVector<f64>,
-    ) -> Option<(Self, f64)> {
-        let crossed = &self.covariance * model.slopes.transpose();
-        let spread = &model.slopes * &crossed + &model.error + DMatrix::from_diagonal(variances);
-        let factor = Cholesky::new(spread)?;
-        let misfit = values - (&model.slopes * &self.mean + &model.offset);
-        let weighted = factor.solve(&misfit);
-        let log_density = -0.5 * misfit.dot(&weighted)
-            - (0..values.len())
-                .map(|i| libm::log(factor.l_dirty()[(i, i)]) + LN_SQRT_TAU)
-                .sum::<f64>();
-        let mean = &self.mean + &crossed * weighted;
-        let less = &crossed * factor.solve(&crossed.transpose());
-        let covariance = &self.covariance - less;
-        let covariance = 0.5 * (&covariance + covariance.transpose());
-        let is_valid = log_density.is_finite() && (0..mean.len()).all(|i| covariance[(i, i)] >= 0.0);
-        is_valid.then_some((Gaussian { mean, covariance }, log_density))
     }
 
     /// Returns whether another distribution is nearly this one: no mean is off by half a standard deviation, and none of these has halved.

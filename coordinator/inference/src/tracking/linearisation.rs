@@ -1,6 +1,7 @@
 //! The model as a linear one over a normal distribution, by differences of the second order.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
+use statistics::prior::LN_SQRT_TAU;
 
 use super::gaussian::Gaussian;
 
@@ -84,6 +85,35 @@ impl Linearisation {
             slopes,
             error,
         })
+    }
+}
+
+impl Gaussian {
+    /// Returns the distribution given measured values, and the log-density of these; `None` where rounding leaves no covariance.
+    ///
+    /// # Arguments
+    /// - `variances`: of the measured values.
+    pub(super) fn updated(
+        &self,
+        model: &Linearisation,
+        values: &DVector<f64>,
+        variances: &DVector<f64>,
+    ) -> Option<(Self, f64)> {
+        let crossed = &self.covariance * model.slopes.transpose();
+        let spread = &model.slopes * &crossed + &model.error + DMatrix::from_diagonal(variances);
+        let factor = Cholesky::new(spread)?;
+        let misfit = values - (&model.slopes * &self.mean + &model.offset);
+        let weighted = factor.solve(&misfit);
+        let log_density = -0.5 * misfit.dot(&weighted)
+            - (0..values.len())
+                .map(|i| libm::log(factor.l_dirty()[(i, i)]) + LN_SQRT_TAU)
+                .sum::<f64>();
+        let mean = &self.mean + &crossed * weighted;
+        let less = &crossed * factor.solve(&crossed.transpose());
+        let covariance = &self.covariance - less;
+        let covariance = 0.5 * (&covariance + covariance.transpose());
+        let is_valid = log_density.is_finite() && (0..mean.len()).all(|i| covariance[(i, i)] >= 0.0);
+        is_valid.then_some((Gaussian { mean, covariance }, log_density))
     }
 }
 
