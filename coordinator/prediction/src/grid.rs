@@ -202,9 +202,9 @@ fn levels(mut values: Vec<f64>) -> usize {
     1 + steps.count()
 }
 
-/// Returns both ends with their geometric mean between them; a range without extent has one value.
+/// Returns both ends with their geometric mean between them; a range of one level has one value.
 fn even([low, high]: [f64; 2]) -> Vec<f64> {
-    if low >= high {
+    if high <= low * (1.0 + ONE_LEVEL) {
         return vec![low];
     }
     let step = |i: usize| i as f64 / (LEVELS - 1) as f64;
