@@ -264,7 +264,7 @@ fn where_the_base_meets_rejected_parameters_no_effect_is_tried_beyond_them() {
     assert_eq!(leader(&ranking).class, ranking.effect(Some(truth)).unwrap().class);
     let rejected = rejected.into_inner();
     assert!(rejected[&None] > 0, "the base leads to rejected parameters");
-    // Those that are confirmed are tried from other starts.
+    // A confirmed candidate is also tried from other starts, so that it does not count here.
     let of_screened = rejected.iter().filter(|(candidate, _)| {
         let effect = ranking.effect(**candidate);
         effect.is_some_and(|effect| effect.method < EvidenceMethod::Refined)

@@ -65,7 +65,7 @@ impl std::fmt::Display for Complaint {
 #[derive(Debug, Default)]
 pub(crate) struct Complaints {
     all: Vec<Complaint>,
-    /// What is said already: several files may have the same mistake of the map.
+    /// The complaints so far. Several files may have the same mistake of the map, which is told once.
     said: BTreeSet<String>,
     /// For each field: number of complaints, and the last complaint shown.
     by_field: Vec<(Option<String>, usize, Complaint)>,

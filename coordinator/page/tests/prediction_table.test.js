@@ -49,7 +49,7 @@ test("a grid gives its own values back, and parabolas of load and speed between 
   }
   near(atSlip(points, 0.33).mean, of(0.33, 83, 0.017), 1e-9);
   assert.equal(atSlip(points, 0.8), null);
-  // What is predicted nowhere has no curve, and what is refused at one corner has none at this slip.
+  // A quantity without any prediction has no curve; a refusal at one corner of the grid leaves the curve blank at this slip.
   assert.deepEqual(curve(table, "none", { load: 83, speed: 0.017 }), []);
   grid.wheels[0].points[0] = { refused: { draws: 40, of: 40, reason: "no_support: x" }, values: [null, null] };
   assert.equal(curve(tableOf(grid, "w"), "q", { load: 83, speed: 0.017 }).length, 3);

@@ -11,8 +11,8 @@ use statistics::likelihood::Likelihood;
 
 /// Refits begin at the fit to all data, so a few steps suffice.
 const PLAN: [FitStep; 2] = [FitStep::Differences, FitStep::Trials(6)];
-/// Those of a rough model, with the derivatives of the fit to all data: a left-out level moves the parameters little, and each of many models
-/// is fitted again without each level.
+/// The refit of a rough model keeps the derivatives of the fit to all data: a left-out level moves the parameters little, and each of many
+/// models is fitted again without each level.
 const PLAN_OF_ROUGH: [FitStep; 1] = [FitStep::Trials(2)];
 
 /// A model to compare: its effects, the number of parameters of the last one, and its fit to all data.

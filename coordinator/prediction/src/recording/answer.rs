@@ -1,4 +1,4 @@
-//! What is said of a recording.
+//! The answer about a recording: parameters in time, and changes of the soil.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
