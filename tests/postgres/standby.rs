@@ -100,6 +100,25 @@ fn a_standby_takes_over_from_a_halted_coordinator_which_ends_when_it_wakes_up() 
 }
 
 #[test]
+fn a_standby_takes_over_within_a_transaction_of_a_halted_coordinator_but_not_within_an_upgrade() {
+    let mut service = Service::start(&[]);
+    service.kill();
+    let mut halted = service.database();
+    until_true("the lock is free", || {
+        halted.text("SELECT pg_try_advisory_lock(x'67726f75736572'::bigint)::text") == "true"
+    });
+    halted.execute("BEGIN; SET application_name = 'grouser upgrade'");
+    let standby = service.standby("standby");
+    let is_serving = || standby.log().contains("serving");
+    std::thread::sleep(TAKE_OVER);
+    assert!(!is_serving(), "{}", standby.log());
+    halted.execute("SET application_name = 'grouser'");
+    let begin = Instant::now();
+    until_true("the standby serves", is_serving);
+    assert!(begin.elapsed() < TAKE_OVER, "{:?}", begin.elapsed());
+}
+
+#[test]
 fn a_second_coordinator_is_turned_away_and_the_password_is_not_shown() {
     let service = Service::start(&[]);
     let store = service.store_name().replacen("@", ":secret@", 1);

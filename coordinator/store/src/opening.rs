@@ -88,10 +88,20 @@ async fn open(path: &str, is_alone: bool) -> Result<Opened, StoreError> {
 }
 
 async fn migrate(connection: &mut Connection, path: &str) -> Result<(), StoreError> {
+    name_upgrade(connection, path, true).await?;
     let migrated = match connection {
         Connection::Sqlite(connection) => migrations::migrator().run(connection).await,
         Connection::Postgres(connection) => migrations::server_migrator().run(connection).await,
     };
     migrated.map_err(|source| StoreError::from_migration(path, source))?;
-    members::fill(connection, path).await
+    members::fill(connection, path).await?;
+    name_upgrade(connection, path, false).await
+}
+
+async fn name_upgrade(connection: &mut Connection, path: &str, is_upgrade: bool) -> Result<(), StoreError> {
+    if let Connection::Postgres(connection) = connection {
+        let named = server::name_upgrade(connection, is_upgrade).await;
+        named.map_err(|source| StoreError::new(path, source))?;
+    }
+    Ok(())
 }

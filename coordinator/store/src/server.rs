@@ -30,8 +30,13 @@ pub(super) async fn in_time<T>(
 
 /// The time without a statement after which the coordinator that holds the lock counts as gone.
 const SILENCE: Duration = Duration::from_secs(7);
-/// Silence within a transaction after which a coordinator counts as halted.
-const SILENCE_IN_TRANSACTION: Duration = Duration::from_secs(60);
+/// The same time while it upgrades the tables, because an upgrade computes between the statements of a transaction.
+const SILENCE_IN_UPGRADE: Duration = Duration::from_secs(60);
+
+/// The name of our connections in the server.
+const NAME: &str = "grouser";
+/// The name of the connection that upgrades the tables.
+const UPGRADE_NAME: &str = "grouser upgrade";
 
 /// The number of the lock that the one writer of a database holds: the letters of "grouser".
 const LOCK: i64 = 0x67_72_6f_75_73_65_72;
@@ -47,7 +52,7 @@ const SETTINGS: [(&str, &str); 4] = [
 
 fn options(path: &str) -> Result<PgConnectOptions, StoreError> {
     let options = PgConnectOptions::from_str(path).map_err(|source| StoreError::new(path, source))?;
-    Ok(options.application_name("grouser").options(SETTINGS))
+    Ok(options.application_name(NAME).options(SETTINGS))
 }
 
 /// Opens a connection that may write.
@@ -85,26 +90,37 @@ pub(super) async fn lock(connection: &mut Connection, path: &str) -> Result<bool
         .map_err(|source| StoreError::new(path, source))
 }
 
+/// Gives the connection the name of one that upgrades the tables, or takes this name back.
+///
+/// # Errors
+/// The database's error.
+pub(super) async fn name_upgrade(connection: &mut PgConnection, is_upgrade: bool) -> Result<(), sqlx::Error> {
+    let name = if is_upgrade { UPGRADE_NAME } else { NAME };
+    let named = sqlx::query("SELECT set_config('application_name', $1, false)").bind(name);
+    named.execute(connection).await.map(drop)
+}
+
 /// Ends the connection that holds the lock of the one writer, if its coordinator has been silent for [`SILENCE`]: it is halted, or no
 /// network leads to it. Returns whether one was ended.
 ///
 /// A coordinator that lives sends a statement every [`PROBE`], and the server knows when the last one ended. A connection that is at work
-/// is left alone, and within a transaction for [`SILENCE_IN_TRANSACTION`], because an upgrade of the store computes between its statements.
-/// A coordinator that wakes up later finds its connection and its lock gone, and ends.
+/// is left alone, and one that upgrades the tables for [`SILENCE_IN_UPGRADE`]. A coordinator can be halted within a transaction as well as
+/// between two. One that wakes up later finds its connection and its lock gone, and ends.
 pub(super) async fn end_silent_holder(connection: &mut Connection, path: &str) -> Result<bool, StoreError> {
     let ended = query_scalar(
         "SELECT pg_terminate_backend(a.pid) FROM pg_locks l JOIN pg_stat_activity a ON a.pid = l.pid
          WHERE l.locktype = 'advisory' AND l.granted AND l.objsubid = 1
          AND l.database = (SELECT oid FROM pg_database WHERE datname = current_database())
          AND l.classid::bigint = ? AND l.objid::bigint = ?
-         AND (a.state = 'idle' AND a.state_change < now() - make_interval(secs => ?)
-              OR a.state LIKE 'idle in transaction%' AND a.state_change < now() - make_interval(secs => ?))",
+         AND a.state LIKE 'idle%'
+         AND a.state_change < now() - make_interval(secs => CASE a.application_name WHEN ? THEN ?::float8 ELSE ?::float8 END)",
     );
     let ended: Vec<bool> = ended
         .bind(LOCK >> 32)
         .bind(LOCK & 0xffff_ffff)
+        .bind(UPGRADE_NAME)
+        .bind(SILENCE_IN_UPGRADE.as_secs_f64())
         .bind(SILENCE.as_secs_f64())
-        .bind(SILENCE_IN_TRANSACTION.as_secs_f64())
         .fetch_all(connection)
         .await
         .map_err(|source| StoreError::new(path, source))?;
