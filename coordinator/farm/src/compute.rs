@@ -102,8 +102,22 @@ impl Compute {
     }
 }
 
+/// The niceness of the compute threads.
+#[cfg(target_os = "linux")]
+const NICENESS: i32 = 10;
+
+/// Gives the threads that answer requests the first turn at a core: where there are fewer cores than threads, an answer would wait for the
+/// end of a step's turn. Only Linux gives a thread its own niceness.
+fn lower_priority() {
+    #[cfg(target_os = "linux")]
+    if let Err(error) = rustix::process::setpriority_process(None, NICENESS) {
+        tracing::debug!(%error, "a compute thread keeps its priority");
+    }
+}
+
 /// Takes steps until the farm's thread has ended.
 fn work(thread: usize, steps: &mpsc::Receiver<(Step, Tell)>, take: &TakeStep) {
+    lower_priority();
     while let Ok((step, tell)) = steps.recv() {
         let (calibration, number) = (step.calibration(), step.number());
         let result = catch_unwind(AssertUnwindSafe(|| take(step))).map_err(|panic| {
