@@ -89,8 +89,12 @@ async fn main() -> Result<(), StudyError> {
     );
     let m = measure(&place, SWARM, 16, "1").await?;
     println!(
-        "{SWARM} workers at batch 16: {:.0} evaluations/s, p99 {:.0} ms, {:.1} us of the coordinator (at most {GOAL_SWARM_CPU_US}), {:.0} MB (at most {GOAL_SWARM_MB})",
-        m.per_second, m.p99_ms, m.cpu_us, m.resident_mb
+        "{SWARM} workers at batch 16: {:.0} evaluations/s, p99 {:.0} ms, {:.1} us of the coordinator (at most {GOAL_SWARM_CPU_US}), {:.0} MB beside {:.0} of the jobs (at most {GOAL_SWARM_MB})",
+        m.per_second,
+        m.p99_ms,
+        m.cpu_us,
+        m.resident_mb - m.jobs_mb,
+        m.jobs_mb
     );
     Ok(())
 }
@@ -100,6 +104,8 @@ struct Measured {
     p50_ms: f64,
     p99_ms: f64,
     cpu_us: f64,
+    /// The memory of the coordinator with its jobs, before a worker comes.
+    jobs_mb: f64,
     /// The largest memory of the coordinator.
     resident_mb: f64,
 }
@@ -150,6 +156,8 @@ async fn measure(
         post(&client, &url, "calibrations", new).await?;
     }
 
+    let memory_mb = |key| memory_kb(&server.id(), key).map(|kb| kb as f64 / 1000.0);
+    let jobs_mb = memory_mb("VmRSS")?;
     let completed = Arc::new(AtomicU64::new(0));
     let cpu_before = cpu_s(&server.id())?;
     let began = Instant::now();
@@ -181,7 +189,8 @@ async fn measure(
         p50_ms: quantile(&latencies_ms, 0.5),
         p99_ms: quantile(&latencies_ms, 0.99),
         cpu_us: 1e6 * (cpu_s(&server.id())? - cpu_before) / evaluations,
-        resident_mb: memory_kb(&server.id(), "VmHWM")? as f64 / 1000.0,
+        jobs_mb,
+        resident_mb: memory_mb("VmHWM")?,
     })
 }
 

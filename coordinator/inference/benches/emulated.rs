@@ -63,7 +63,10 @@ fn row(problem: &OutputProblem, seeds: u64) -> Row {
 /// Prints a line for each problem: the seeds that were left to draws of the model, and of all other seeds the mean and largest number of
 /// evaluations before the final draws, the mean number of all, root mean square and largest error of ln Z, the mean standard error
 /// that was reported, and the effective final draws.
-pub(crate) fn print(seeds: u64) {
+///
+/// # Arguments
+/// - `names`: the problems to solve; empty: all.
+pub(crate) fn print(seeds: u64, names: &[String]) {
     println!(
         "{:3} {:>2} {:>9} {:>6} {:>6} {:>6} {:>8} {:>8} {:>8} {:>5}",
         "", "d", "left", "to 1", "max", "all", "rmse", "largest", "se", "ess"
@@ -78,6 +81,9 @@ pub(crate) fn print(seeds: u64) {
         output_problems::shells(),
         output_problems::eggbox(),
     ] {
+        if !names.is_empty() && !names.iter().any(|name| name == problem.name) {
+            continue;
+        }
         let row = row(&problem, seeds);
         println!(
             "{:3} {:>2} {:>5}/{seeds:<3} {:6.0} {:6.0} {:6.0} {:8.4} {:8.4} {:8.4} {:5.0}",

@@ -7,7 +7,7 @@
 //! Below it, unless one problem was asked for: what it costs to find the most probable parameters (`fits`).
 //!
 //! `cargo bench -p inference --bench sampler_table [-- SEEDS [LABEL [PROBLEM]]]` with the start of a row's label, or `-- fits
-//! [SEEDS]`, or `-- emulated [SEEDS]` for the sampler that emulates outputs (`emulated`).
+//! [SEEDS]`, or `-- emulated [SEEDS [PROBLEM...]]` for the sampler that emulates outputs (`emulated`).
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests may panic as tests do")]
 
@@ -114,7 +114,7 @@ fn main() {
     }
     if arguments.first().is_some_and(|word| word == "emulated") {
         let seeds = arguments.get(1).and_then(|text| text.parse().ok());
-        return emulated::print(seeds.unwrap_or(20));
+        return emulated::print(seeds.unwrap_or(20), arguments.get(2..).unwrap_or_default());
     }
     let number = |index: usize| arguments.get(index).and_then(|text| text.parse::<usize>().ok());
     let seeds = number(0).unwrap_or(20) as u64;

@@ -17,8 +17,7 @@ use super::error::{Body, HttpError, Name, Query};
 use super::list_page::NamesPage;
 use crate::effect::EffectCard;
 use crate::effect::signature::{Signature, signature};
-use crate::service::Service;
-use farm::dispatch::Stopped;
+use crate::service::{Service, in_background};
 use store::{EffectVersion, StoreError, StoredEffect};
 
 pub(super) fn routes() -> OpenApiRouter<Service> {
@@ -65,7 +64,7 @@ async fn list(
     Query(which): Query<NamesPage>,
 ) -> Result<Json<Vec<EffectCard>>, HttpError> {
     let added = service.store().reader().user_effects().await?;
-    let cards = tokio::task::spawn_blocking(move || {
+    let cards = in_background(move || {
         let library = catalogue().iter().map(|effect| Ok(EffectCard::new(effect)));
         let added = added
             .iter()
@@ -73,7 +72,7 @@ async fn list(
         let cards = library.chain(added).collect::<Result<Vec<_>, HttpError>>()?;
         which.cut(cards, |card| &card.name)
     });
-    Ok(Json(cards.await.map_err(|_| Stopped)??))
+    Ok(Json(cards.await?))
 }
 
 /// An effect with its file and influence.
@@ -99,8 +98,8 @@ async fn show(State(service): State<Service>, Name(name): Name) -> Result<Json<E
         }
     };
     let text = effect.text.clone();
-    let computed = tokio::task::spawn_blocking(move || signature(&effect, ModelKind::QuasiStatic));
-    let (signature, no_signature) = match computed.await.map_err(|_| Stopped)? {
+    let computed = in_background(move || Ok::<_, HttpError>(signature(&effect, ModelKind::QuasiStatic)));
+    let (signature, no_signature) = match computed.await? {
         Ok(signature) => (Some(signature), None),
         Err(reason) => (None, Some(reason)),
     };

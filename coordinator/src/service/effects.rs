@@ -6,10 +6,10 @@ use sha2::{Digest, Sha256};
 use shared::file::{FileError, FileSet};
 use shared::model::effects::read_user_effect;
 
+use super::background::in_background;
 use super::clock::now_ms;
 use super::error::ServiceError;
 use super::handle::Service;
-use farm::dispatch::Stopped;
 use job::{EffectOnNodes, ModelSwitch, PlainParameter, ServiceEffect, check_effect, foreign_effects};
 use record::Extension;
 use store::{AddedEffect, NewEffect, StoredEffect};
@@ -24,7 +24,7 @@ impl Service {
     /// # Errors
     /// [`ServiceError`]: the file is malformed, or the name belongs to the library.
     pub async fn add_effect(&self, text: String, by: Option<String>) -> Result<AddedEffect, ServiceError> {
-        let read = tokio::task::spawn_blocking(move || {
+        let read = in_background(move || {
             if let Ok(effect) = Effect::read(&text)
                 && find(&effect.name).is_some()
             {
@@ -32,9 +32,9 @@ impl Service {
             }
             let effect = read_user_effect(EFFECT, &text)?;
             check_effect(EFFECT, &effect)?;
-            Ok(effect)
+            Ok::<_, ServiceError>(effect)
         });
-        let effect = read.await.map_err(|_| Stopped)??;
+        let effect = read.await?;
         let digest = Sha256::digest(effect.text.as_bytes());
         let new = NewEffect {
             name: effect.name,
@@ -87,9 +87,9 @@ impl Service {
         job: &FileSet,
     ) -> Result<Vec<ServiceEffect>, ServiceError> {
         let toml = job.toml.clone();
-        let listed = tokio::task::spawn_blocking(move || foreign_effects(&toml));
+        let listed = in_background(move || Ok::<_, ServiceError>(foreign_effects(&toml)));
         let mut effects = Vec::new();
-        for named in listed.await.map_err(|_| Stopped)? {
+        for named in listed.await? {
             effects.extend(self.as_file(&named).await?);
         }
         Ok(effects)

@@ -107,22 +107,3 @@ impl ServiceError {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[tokio::test]
-    async fn a_computation_that_panics_is_not_answered_as_busy() {
-        let compute: fn() = || panic!("of a prediction");
-        let error = tokio::task::spawn_blocking(compute).await.unwrap_err();
-        assert!(matches!(
-            ServiceError::not_ended(error),
-            ServiceError::Panicked(_)
-        ));
-        let endless = tokio::spawn(std::future::pending::<()>());
-        endless.abort();
-        let error = endless.await.unwrap_err();
-        assert!(matches!(ServiceError::not_ended(error), ServiceError::Stopped(_)));
-    }
-}

@@ -7,6 +7,7 @@ use shared::api::{CalibrationCreated, RunsAdded};
 use shared::experiment::Experiment;
 use shared::file::FileSet;
 
+use super::background::in_background;
 use super::clock::now_ms;
 use super::error::ServiceError;
 use super::handle::Service;
@@ -14,7 +15,6 @@ use super::stored_calibration::{FILES, has_posterior};
 use super::submission::role_of;
 use crate::study::{Lineage, StudyStep, most_probable};
 use farm::calibration::{Calibration, CalibrationIdentity};
-use farm::dispatch::Stopped;
 use job::{Job, Spec, continued_job, without_effects};
 use record::{CalibrationRow, Change, Extension, Membership, addition_name};
 use search::candidate::extended;
@@ -75,9 +75,8 @@ impl Service {
             return Err(ServiceError::not_found("study", study));
         };
         let experiment = self.experiment(newest.experiment).await?;
-        let enlarged =
-            tokio::task::spawn_blocking(move || Experiment::with_runs(FILES[1], &experiment, &csv));
-        let (enlarged, runs) = enlarged.await.map_err(|_| Stopped)??;
+        let enlarge = move || Ok::<_, ServiceError>(Experiment::with_runs(FILES[1], &experiment, &csv)?);
+        let (enlarged, runs) = in_background(enlarge).await?;
         let job = continued_job(FILES[0], &last.job)?;
         // The job is validated before anything is stored.
         let name = format!("{} ({runs} runs)", last.name);
@@ -213,7 +212,7 @@ impl Service {
             experiment,
         };
         let parent = parent.id;
-        let member = tokio::task::spawn_blocking(move || {
+        let member = in_background(move || {
             let [job_name, experiment_name] = FILES;
             let value = Job::read(job_name, &job)?;
             let (value, membership) = match change {
@@ -233,7 +232,7 @@ impl Service {
             };
             Ok::<_, ServiceError>((calibration, row))
         });
-        member.await.map_err(|_| Stopped)?
+        member.await
     }
 
     async fn take_in(

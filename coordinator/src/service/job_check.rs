@@ -8,6 +8,7 @@ use shared::file::FileSet;
 use tokio::sync::Semaphore;
 use utoipa::ToSchema;
 
+use super::background::in_background;
 use super::error::ServiceError;
 use super::handle::Service;
 use super::submission::specs_of;
@@ -104,12 +105,12 @@ impl Service {
         let service_effects = self.listed_user_effects(&job).await?;
         // The semaphore is never closed. A thread that computes cannot be stopped, so it keeps the permit until it has ended.
         let turn = ONE_AT_A_TIME.acquire().await;
-        let checked = tokio::task::spawn_blocking(move || {
+        let checked = in_background(move || {
             let _turn = turn;
             let specs = specs_of(&job, &service_effects, &experiment)?;
             check(specs, &job, &experiment)
         });
-        checked.await.map_err(ServiceError::not_ended)?
+        checked.await
     }
 }
 

@@ -4,6 +4,7 @@
 //! - `handle`: [`Service`].
 //! - `farm_settings`: settings of leases and verification.
 //! - `recovery`: resumes calibrations at a start.
+//! - `background`: computations beside the threads that answer requests.
 //! - `submission`: new experiments and calibrations.
 //! - `effects`: effects that users add to the catalogue, and jobs that name them.
 //! - `removal`: archives and deletes studies. `withdrawal`: takes back what was added to a study, and keeps what people say of it.
@@ -19,6 +20,7 @@
 //! - `study_changes`: notifications of changes of studies.
 
 mod announcement;
+mod background;
 mod clock;
 mod effects;
 mod error;
@@ -44,6 +46,7 @@ mod submission;
 mod what_if;
 mod withdrawal;
 
+pub(crate) use background::in_background;
 pub use error::ServiceError;
 pub use farm_settings::{FarmSettings, LEASE_MS, VERIFIED_PERCENT};
 pub use handle::Service;

@@ -6,6 +6,7 @@ use shared::api::{NewDecision, NewPrediction};
 use shared::experiment::read_wheels;
 use tokio::sync::Semaphore;
 
+use super::background::in_background;
 use super::error::ServiceError;
 use super::finished_study::{check_finished, finished_study};
 use super::handle::Service;
@@ -80,11 +81,11 @@ impl Service {
             members = vec![row.clone()];
         }
         let study = finished_study(&reader, &row, &members).await?;
-        let computed = tokio::task::spawn_blocking(move || {
+        let computed = in_background(move || {
             let _turn = turn;
-            compute(study)
+            Ok(compute(study)?)
         });
-        Ok(computed.await.map_err(ServiceError::not_ended)??)
+        computed.await
     }
 }
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::background::in_background;
 use super::error::ServiceError;
 use super::stored_calibration::{calibration_row, experiment_files, spec_of};
 use farm::calibration::{Calibration, CalibrationIdentity, VerificationRule};
@@ -76,7 +77,7 @@ async fn take_up(
         let calibration = Calibration::from_files(identity, spec, &row.job, &experiment)?;
         let mut calibration = calibration.verified(&rule, key);
         let facts = calibration.replay(stored)?;
-        Ok((calibration, facts))
+        Ok::<_, ServiceError>((calibration, facts))
     })
     .await?;
     tracing::info!(
@@ -87,27 +88,4 @@ async fn take_up(
         "resumed"
     );
     Ok(dispatcher.add(calibration, key, facts).await?)
-}
-
-/// Computes outside the threads of the runtime, because the replay of a long calibration takes seconds of CPU time. A panic is an error of
-/// this computation alone.
-async fn in_background<T: Send + 'static>(
-    compute: impl FnOnce() -> Result<T, ServiceError> + Send + 'static,
-) -> Result<T, ServiceError> {
-    let computed = tokio::task::spawn_blocking(compute).await;
-    computed.map_err(ServiceError::not_ended)?
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[tokio::test]
-    async fn a_replay_that_panics_does_not_stop_the_service() {
-        let replay: fn() -> Result<(), ServiceError> = || panic!("in a step");
-        let error = in_background(replay).await.unwrap_err();
-        // Every error but `Stopped` leaves one calibration alone.
-        assert!(matches!(error, ServiceError::Panicked(_)), "{error}");
-        assert!(error.to_string().contains("in a step"), "{error}");
-    }
 }

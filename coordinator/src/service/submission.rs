@@ -6,11 +6,11 @@ use shared::api::{CalibrationCreated, NewCalibration, NewExperiment};
 use shared::experiment::Experiment;
 use shared::file::{FileError, FileSet};
 
+use super::background::in_background;
 use super::clock::now_ms;
 use super::error::ServiceError;
 use super::handle::Service;
 use farm::calibration::{Calibration, CalibrationIdentity};
-use farm::dispatch::Stopped;
 use job::{
     AlgorithmSettings, Job, ServiceEffect, Spec, check_accepted, model_job, point_job, with_service_effects,
     without_service_effects,
@@ -55,10 +55,7 @@ impl Service {
             study: 0,
             experiment: new.experiment,
         };
-        // Validating files and drawing a large population from the prior take CPU time, so they do not run on the async runtime.
-        let members =
-            tokio::task::spawn_blocking(move || members(&trial, job, &service_effects, &experiment));
-        let members = members.await.map_err(|_| Stopped)??;
+        let members = in_background(move || members(&trial, job, &service_effects, &experiment)).await?;
         let (members, rows): (Vec<Calibration>, Vec<NewCalibrationRow>) = members.into_iter().unzip();
         let study = NewStudy {
             experiment: new.experiment,

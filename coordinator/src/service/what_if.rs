@@ -3,9 +3,9 @@
 use shared::api::{CalibrationCreated, NewCalibration, NewExperiment};
 use shared::experiment::Experiment;
 
+use super::background::in_background;
 use super::error::ServiceError;
 use super::handle::Service;
-use farm::dispatch::Stopped;
 use job::{Spec, searched_job};
 
 /// The largest number of runs that a name lists.
@@ -26,12 +26,12 @@ impl Service {
         let job = searched_job("job.toml", &row.job)?;
         let trial = job.clone();
         // The job is validated before anything is stored.
-        let edited = tokio::task::spawn_blocking(move || {
+        let edited = in_background(move || {
             let edited = Experiment::with_held_out("experiment.toml", &files, &without)?;
             Spec::new("job.toml", &trial, "experiment.toml", &edited)?;
             Ok::<_, ServiceError>(edited)
         });
-        let edited = edited.await.map_err(|_| Stopped)??;
+        let edited = edited.await?;
         let experiment = self.add_experiment(NewExperiment {
             toml: edited.toml,
             files: edited.files,

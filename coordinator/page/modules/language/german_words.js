@@ -123,6 +123,8 @@ export const WORDS = {
   "contraction": "Verengung",
   "Control of the calibration": "Steuerung der Kalibrierung",
   "current, corrected": "aktuell, korrigiert",
+  "In 90 % interval: the noise was inferred as wide as the error, so that this share says nothing for the model.":
+    "Im 90-%-Intervall: Das Rauschen wurde so breit wie der Fehler geschlossen, daher spricht dieser Anteil nicht für das Modell.",
   "dashed outline: prior": "gestrichelt: Prior",
   "Dashed: what": "Gestrichelt: was",
   "Data": "Daten",

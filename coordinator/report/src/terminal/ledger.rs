@@ -125,6 +125,13 @@ fn table(study: &Study, lines: &[LedgerLine], predictions: &[(&str, Option<&Erro
     if rows.any(|row| !row.worse.is_empty()) {
         let _ = writeln!(text, "*: worse than in the model above");
     }
+    let mut rows = lines.iter().flat_map(|line| &line.rows);
+    if rows.any(LedgerRow::is_inside_by_noise) {
+        let _ = writeln!(
+            text,
+            "inside: the noise was inferred as wide as the error, so this says nothing"
+        );
+    }
     text
 }
 

@@ -36,6 +36,20 @@ pub struct LedgerRow {
     pub coverage: Option<Coverage>,
 }
 
+/// The errors in noise standard deviations above which intervals of that noise would hold few of the measurements.
+const LARGE: f64 = 3.0;
+
+impl LedgerRow {
+    /// Returns whether the intervals hold nine of ten measurements although the errors are larger than [`LARGE`]. Their noise was inferred
+    /// as wide as the errors, so that the count says nothing for the model.
+    pub fn is_inside_by_noise(&self) -> bool {
+        let holds = self
+            .coverage
+            .is_some_and(|held| 10 * held.inside >= 9 * held.total);
+        holds && self.errors.all.rmse_fixed_sigma.is_some_and(|sds| sds > LARGE)
+    }
+}
+
 impl Study {
     /// Returns the noise standard deviations that all lines of the ledger are measured in.
     pub fn fixed_sigmas(&self) -> FixedSigmas {
@@ -125,6 +139,19 @@ mod tests {
         assert_eq!(marked(0.0, &|_| ()), []);
         assert_eq!(marked(0.05, &|_| ()), [Channel::Sinkage]);
         assert_eq!(marked(0.05, &|extension| extension.row.experiment += 1), []);
+    }
+
+    #[test]
+    fn intervals_as_wide_as_large_errors_say_nothing() {
+        let says_nothing = |inside: usize, sds: f64| {
+            let study = fixture::grown();
+            let mut row = study.ledger_lines().remove(0).rows.remove(0);
+            row.coverage = Some(Coverage { inside, total: 30 });
+            row.errors.all.rmse_fixed_sigma = Some(sds);
+            row.is_inside_by_noise()
+        };
+        assert!(says_nothing(30, 19.2) && says_nothing(27, 3.1));
+        assert!(!says_nothing(26, 19.2) && !says_nothing(30, 2.9));
     }
 
     #[test]
