@@ -47,10 +47,11 @@ export function clearest(now, before) {
   const places = wheels.flatMap((wheel) => {
     const own = now.filter((row) => row.wheel === wheel);
     const found = groups(own);
-    return found.colours.map((load, k) => {
-      const rows = found.groups.filter((group) => group.colour === k).flatMap((group) => group.rows);
+    const loads = found.colourKey === "wheel_load_n" ? found.colours : [null];
+    return loads.map((load, k) => {
+      const rows = load === null ? own : found.groups.filter((group) => group.colour === k).flatMap((group) => group.rows);
       const gain = rows.reduce((sum, row) => sum + Math.abs(square(old.get(row.run)) - (now === before ? 0 : square(row))), 0) / rows.length;
-      return { wheel: wheels.length > 1 ? wheel : null, load: found.colours.length > 1 ? load : null, rows, gain };
+      return { wheel: wheels.length > 1 ? wheel : null, load: loads.length > 1 ? load : null, rows, gain };
     });
   });
   const clear = places.filter(({ rows }) => new Set(rows.map((row) => row.slip)).size >= LEAST_SLIPS);
