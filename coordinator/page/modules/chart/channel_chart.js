@@ -15,6 +15,8 @@ import { byRun, pointable } from "./runs.js";
 
 /** Between computed conditions a line bends without a kink, and without going beyond its ends. */
 const CURVE = "monotone-x";
+/** The height of a low picture [px]. */
+const LOW = 168;
 /** More levels are not named in the legend. */
 const MOST_NAMES = 10;
 
@@ -22,16 +24,17 @@ const MOST_NAMES = 10;
  * @typedef {{ name: string, colour: string | null, rows: any[], isGhost?: boolean }} Layer
  *   colour: of all its lines; null: each group of runs has its own.
  * @typedef {import("./surface_curves.js").SurfaceCurves} Moving
- * @param {{ channel: string, wheel: string | null, measurements: any[], layers: Layer[], axis: import("./condition.js").ConditionAxis, name: string, moving?: Moving, title?: string }} properties
- *   layers: models, each with the rows of its comparison. measurements: each of them once.
+ * @param {{ channel: string, wheel: string | null, measurements: any[], layers: Layer[], axis: import("./condition.js").ConditionAxis, name: string, moving?: Moving, title?: string, isLow?: boolean }} properties
+ *   layers: models, each with the rows of its comparison. measurements: each of them once. isLow: as low as it can be read.
  */
-export function ChannelChart({ channel, wheel, measurements, layers, axis, name, moving, title: stated }) {
+export function ChannelChart({ channel, wheel, measurements, layers, axis, name, moving, title: stated, isLow = false }) {
   const own = (/** @type {any[]} */ rows) => rows.filter((r) => r.channel === channel && (wheel === null || r.wheel === wheel));
   const measured = own(measurements);
   const quantity = shown(measured[0].unit);
   const found = useMemo(() => groups(measured, axis.key), [measurements, channel, wheel, axis.key]);
-  const title = stated ?? t`${[channelName(channel), wheel === null ? "" : t`wheel ${wheel}`].filter(Boolean).join(", ")}, measured and computed, by ${axis.title}`;
-  const draw = (/** @type {number} */ width) => picture({ width, layers: layers.map((l) => ({ ...l, rows: own(l.rows) })), measured, found, axis, quantity, channel, moving });
+  const what = [channelName(channel), wheel === null ? "" : t`wheel ${wheel}`].filter(Boolean).join(", ");
+  const title = stated ?? (isLow ? t`${what}, by ${axis.title}` : t`${what}, measured and computed, by ${axis.title}`);
+  const draw = (/** @type {number} */ width) => picture({ width, layers: layers.map((l) => ({ ...l, rows: own(l.rows) })), measured, found, axis, quantity, channel, moving, isLow });
   const drawn = (/** @type {any} */ plot) => {
     const release = pointable(plot, { runsIn, words: (from, to) => spanWords(axis, from, to) });
     const curves = found.groups.map((group) => ({ rows: group.rows, stroke: colour(group.colour) }));
@@ -55,7 +58,7 @@ export function ChannelChart({ channel, wheel, measurements, layers, axis, name,
     deps=${[layers.map((l) => `${l.name} ${l.rows.length}`).join(), layers.at(-1)?.rows, measurements, axis.key]}
     draw=${draw} rows=${() => table(layers, own)}
     onDrawn=${drawn}
-    legend=${html`${colours}${symbols}
+    legend=${html`${found.single && html`<span>${found.single}</span>`}${colours}${symbols}
       ${hasHoldout && html`<${Entry} glyph=${html`<circle cx="8" cy="8" r="4" fill="none" stroke="currentColor" stroke-width="2" />`}>held out<//>`}
       ${layers.filter((l) => l.colour !== null).map((l) => html`<${Entry} glyph=${html`<path d="M0 8h16" stroke=${l.colour} stroke-width="2" stroke-dasharray=${l.isGhost ? "3 3" : ""} />`}>${l.name}<//>`)}`} />`;
 }
@@ -68,8 +71,8 @@ function table(/** @type {Layer[]} */ layers, /** @type {(rows: any[]) => any[]}
   })));
 }
 
-/** @param {{ width: number, layers: Layer[], measured: any[], found: ReturnType<typeof groups>, axis: any, quantity: any, channel: string, moving?: Moving }} properties */
-function picture({ width, layers, measured, found, axis, quantity, channel, moving }) {
+/** @param {{ width: number, layers: Layer[], measured: any[], found: ReturnType<typeof groups>, axis: any, quantity: any, channel: string, moving?: Moving, isLow: boolean }} properties */
+function picture({ width, layers, measured, found, axis, quantity, channel, moving, isLow }) {
   const x = (/** @type {any} */ r) => r[axis.key] * axis.scale;
   const value = (/** @type {string} */ key) => (/** @type {any} */ r) => (r[key] === null || r[key] === undefined ? NaN : r[key] * quantity.scale);
   const place = new Map(found.groups.flatMap((group) => group.rows.map((r) => [r.run, group])));
@@ -90,7 +93,7 @@ function picture({ width, layers, measured, found, axis, quantity, channel, movi
     }),
   ].filter(Boolean).join("\n");
   return Plot.plot({
-    width, height: Math.max(240, Math.min(360, 0.62 * width)), marginTop: 26, marginLeft: 56, marginBottom: 40, inset: 7, grid: true, style: STYLE,
+    width, height: isLow ? LOW : Math.max(240, Math.min(360, 0.62 * width)), marginTop: 26, marginLeft: 56, marginBottom: 40, inset: 7, grid: true, style: STYLE,
     x: { label: titled(axis.title, axis.unit), labelArrow: "none", labelAnchor: "center", nice: true },
     y: { label: titled(channelName(channel), quantity.unit), labelArrow: "none", nice: true, ...(moving ? { domain: reach(layers, measured, quantity, moving) } : {}) },
     marks: [

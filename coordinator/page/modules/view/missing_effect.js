@@ -69,7 +69,7 @@ export function MissingEffect({ study, model, query, reload }) {
       </div>
       <div class="ghosts">
         <p class="note" aria-live="polite">${ghost ? html`Dashed: what <b>${OTHERS[ghost] ?? ghost}</b> would predict for the fitted runs, from the search's fit. Nothing has been computed anew.` : t`Point at an explanation: its predictions appear over the data before anything is computed; a click on its name keeps them.`}</p>
-        ${comparison && html`<${ChannelCharts} small=${true} order=${byChange(comparison.rows, record.curves, ghost)} layers=${layers} axis=${varying(comparison.rows)[0]} name=${`${study.name}-ghost`} />`}
+        ${comparison && html`<${ChannelCharts} small=${true} isLow=${true} order=${byChange(comparison.rows, record.curves, ghost)} layers=${layers} axis=${varying(comparison.rows)[0]} name=${`${study.name}-ghost`} />`}
       </div>
     </div>
     ${record.outside && html`<${LawChart} law=${record.outside} name=${study.name} add=${isReport ? null : () => add({ effect_file: { name: "outside.toml", text: record.outside.effect_file } })} />`}
