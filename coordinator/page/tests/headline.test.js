@@ -33,12 +33,13 @@ test("the headline of a searched model names what is missing in plain words, or 
     const model = { id: 1, story: story(missing, [channel("drawbar_pull", isCalm)]) };
     return headline(model, errorChanges({ ledger: LEDGER, fixed_sigma: SIGMA }, model));
   };
-  const error = " (drawbar pull of held-out runs: error 11.7\u00a0N)";
+  const error = " (drawbar pull of held-out runs: error 11.7\u00a0N, noise 1.2\u00a0N)";
   assert.equal(said({ verdict: "named", named: [JANOSI] }), `Something is missing: shear stress needs displacement to build up${error}`);
   assert.equal(said({ verdict: "class", named: [JANOSI, JANOSI] }), `One of 2 effects is missing, and the data do not tell which${error}`);
   assert.equal(said({ verdict: "undecided" }), `Whether something is missing is undecided${error}`);
   assert.equal(said({ verdict: "nothing_detectable" }, true), `The model explains the runs to within the noise${error}`);
-  assert.equal(said({}), `The model was not searched for a missing effect${error}`);
+  // What is wrong comes first where nobody has searched.
+  assert.equal(said({}), "Drawbar pull of held-out runs is off by 11.7\u00a0N (noise 1.2\u00a0N); what is missing was not searched for");
 });
 
 test("probabilities of one search add up to 1 with all others together", () => {

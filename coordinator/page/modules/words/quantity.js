@@ -13,8 +13,11 @@ const UNITS = { drawbar_pull: "N", torque: "N m", sinkage: "m", lateral_force: "
 /** The channels in their order. */
 export const CHANNELS = /** @type {const} */ (["drawbar_pull", "torque", "sinkage", "lateral_force"]);
 
-/** Units in a text as people write them: `kg/m³`. */
-export const raised = (/** @type {string} */ text) => text.replace(/\^([23])/g, (_, power) => (power === "2" ? "²" : "³"));
+/** Units and numbers in a text of the service as people write them: `kg/m³`, `7·10⁻⁷`, `−0.5`, and to four digits where it has all. */
+export const raised = (/** @type {string} */ text) => text.replace(/\^([23])/g, (_, exponent) => (exponent === "2" ? "²" : "³"))
+  .replace(/(?<![\w.]|\w-)(\d+(?:\.\d+)?)e([+-]?\d+)(?!\w)/g, (_, factor, exponent) => `${factor === "1" ? "" : `${factor}·`}${power(Number(exponent))}`)
+  .replace(/(?<=^|[\s(])-(?=\d)/g, "−")
+  .replace(/\d+\.\d{9,}/g, (number) => String(Number(Number(number).toPrecision(4))));
 
 /** `drawbar_pull` as words. */
 export const words = (/** @type {string} */ name) => name.replaceAll("_", " ");
