@@ -55,7 +55,10 @@ test("the picture has the load at which the models differ most", () => {
     run: `${load} ${slip}`, wheel: "w", slip, wheel_load_n: load, sled_speed_m_s: 0.01, slip_angle_deg: 0, measured: 10, predicted });
   const rows = (/** @type {number} */ ofHeavy) => [60, 120].flatMap((load) => [0.1, 0.3, 0.5].map((slip) => row(load, slip, load === 120 ? ofHeavy : 9)));
   const found = clearest(rows(10), rows(4));
-  assert.deepEqual([found.load, found.runs.size, found.wheel], ["120 N", 3, null]);
+  assert.deepEqual([found.at, found.runs.size, found.wheel], ["at a wheel load of 120 N", 3, null]);
+  // Of one load, the slip angle.
+  const angles = (/** @type {number} */ ofSkew) => [0, 45].flatMap((angle) => [0.1, 0.3, 0.5].map((slip) => ({ ...row(60, slip, angle === 45 ? ofSkew : 9), run: `${angle} ${slip}`, slip_angle_deg: angle })));
+  assert.equal(clearest(angles(10), angles(4)).at, "at a slip angle of 45°");
   // Two slips are no curve: all runs are drawn.
-  assert.equal(clearest(rows(10).slice(0, 2), rows(4).slice(0, 2)).load, null);
+  assert.equal(clearest(rows(10).slice(0, 2), rows(4).slice(0, 2)).at, null);
 });

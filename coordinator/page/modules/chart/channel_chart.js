@@ -10,13 +10,16 @@ import { spanWords } from "./condition.js";
 import { Entry, Figure, fileName } from "./figure.js";
 import { glyph } from "./glyph.js";
 import { Plot, STYLE } from "./library.js";
+import { MANY } from "./merged.js";
 import { LEAST_LINE, meanOf, places } from "./place.js";
 import { byRun, pointable } from "./runs.js";
 
 /** Between computed conditions a line bends without a kink, and without going beyond its ends. */
 const CURVE = "monotone-x";
 /** The height of a low picture [px]. */
-const LOW = 168;
+const LOW = 150;
+/** Bands of more lines of several models hide each other. */
+const MOST_BANDS = 8;
 /** More levels are not named in the legend. */
 const MOST_NAMES = 10;
 
@@ -33,7 +36,7 @@ export function ChannelChart({ channel, wheel, measurements, layers, axis, name,
   const quantity = shown(measured[0].unit);
   const found = useMemo(() => groups(measured, axis.key), [measurements, channel, wheel, axis.key]);
   const what = [channelName(channel), wheel === null ? "" : t`wheel ${wheel}`].filter(Boolean).join(", ");
-  const title = stated ?? (isLow ? t`${what}, by ${axis.title}` : t`${what}, measured and computed, by ${axis.title}`);
+  const title = stated ?? (isLow ? what : t`${what}, measured and computed, by ${axis.title}`);
   const draw = (/** @type {number} */ width) => picture({ width, layers: layers.map((l) => ({ ...l, rows: own(l.rows) })), measured, found, axis, quantity, channel, moving, isLow });
   const drawn = (/** @type {any} */ plot) => {
     const release = pointable(plot, { runsIn, words: (from, to) => spanWords(axis, from, to) });
@@ -76,20 +79,25 @@ function picture({ width, layers, measured, found, axis, quantity, channel, movi
   const x = (/** @type {any} */ r) => r[axis.key] * axis.scale;
   const value = (/** @type {string} */ key) => (/** @type {any} */ r) => (r[key] === null || r[key] === undefined ? NaN : r[key] * quantity.scale);
   const place = new Map(found.groups.flatMap((group) => group.rows.map((r) => [r.run, group])));
-  const marks = layers.flatMap((layer) => layerMarks(layer, place, x, value));
+  const isMany = measured.length > MANY;
+  const hasBands = layers.length === 1 || layers.length * found.groups.length <= MOST_BANDS;
+  const marks = layers.flatMap((layer) => layerMarks({ ...layer, hasBands: hasBands && !layer.isGhost }, place, x, value, isMany));
   const isLayered = layers.some((l) => l.colour !== null && !l.isGhost);
   const dots = (/** @type {any[]} */ rows, /** @type {any} */ look) => found.groups.map((group) => {
     const own = rows.filter((r) => place.get(r.run) === group);
     const sign = isLayered ? { symbol: symbol(group.colour), ...look("var(--measured)") } : { symbol: symbol(group.symbol), ...look(colour(group.colour)) };
-    return Plot.dot(own, byRun(own, { x, y: value("measured"), r: 4.2, ...sign }));
+    return Plot.dot(own, byRun(own, { x, y: value("measured"), r: 4.2, ...sign }, isMany));
   });
+  // Edges would be drawn over the signs beside them where these are one element.
+  const edge = isMany ? {} : { stroke: "var(--paper)", strokeWidth: 0.7 };
+  const predictions = layers.map((layer) => ({ name: layer.name, ofRun: new Map(layer.rows.map((r) => [r.run, r.predicted])) }));
   const tip = (/** @type {any} */ r) => [
     runName(r),
     conditionWords(r),
     `${t`measured`} ${digits(r.measured * quantity.scale)} ${quantity.unit}`,
-    ...layers.map((l) => {
-      const own = l.rows.find((o) => o.run === r.run);
-      return own?.predicted === undefined || own?.predicted === null ? "" : `${l.name} ${digits(own.predicted * quantity.scale)} ${quantity.unit}`;
+    ...predictions.map(({ name, ofRun }) => {
+      const predicted = ofRun.get(r.run);
+      return predicted === undefined || predicted === null ? "" : `${name} ${digits(predicted * quantity.scale)} ${quantity.unit}`;
     }),
   ].filter(Boolean).join("\n");
   return Plot.plot({
@@ -98,7 +106,7 @@ function picture({ width, layers, measured, found, axis, quantity, channel, movi
     y: { label: titled(channelName(channel), quantity.unit), labelArrow: "none", nice: true, ...(moving ? { domain: reach(layers, measured, quantity, moving) } : {}) },
     marks: [
       ...marks,
-      ...dots(measured.filter((r) => r.use !== "holdout"), (/** @type {string} */ c) => ({ fill: c, stroke: "var(--paper)", strokeWidth: 0.7 })),
+      ...dots(measured.filter((r) => r.use !== "holdout"), (/** @type {string} */ c) => ({ fill: c, ...edge })),
       ...dots(measured.filter((r) => r.use === "holdout"), (/** @type {string} */ c) => ({ fill: "var(--paper)", stroke: c, strokeWidth: 1.8 })),
       Plot.tip(measured, Plot.pointer({ x, y: value("measured"), title: tip, maxRadius: 14, fill: "var(--panel)", stroke: "var(--rule)" })),
     ],
@@ -113,7 +121,7 @@ function reach(/** @type {Layer[]} */ layers, /** @type {any[]} */ measured, /**
 }
 
 /** The lines of a model: one for each group of runs. */
-function layerMarks(/** @type {Layer} */ layer, /** @type {Map<string, any>} */ place, /** @type {any} */ x, /** @type {any} */ value) {
+function layerMarks(/** @type {Layer & { hasBands: boolean }} */ layer, /** @type {Map<string, any>} */ place, /** @type {any} */ x, /** @type {any} */ value, /** @type {boolean} */ isMany) {
   const known = layer.rows.filter((r) => r.predicted !== null && r.predicted !== undefined && place.has(r.run));
   const all = [...new Set(known.map((r) => place.get(r.run)))];
   return all.flatMap((group) => {
@@ -124,13 +132,13 @@ function layerMarks(/** @type {Layer} */ layer, /** @type {Map<string, any>} */ 
     const means = atEqual(rows, x);
     if (means.length >= LEAST_LINE) {
       return [
-        ...(layer.isGhost ? [] : [Plot.areaY(means, { ...band, curve: CURVE, fill: stroke, fillOpacity: 0.16 })]),
+        ...(layer.hasBands ? [Plot.areaY(means, { ...band, curve: CURVE, fill: stroke, fillOpacity: 0.16 })] : []),
         Plot.lineY(means, { x, y: value("predicted"), curve: CURVE, stroke, ...dash, className: layer.isGhost ? "ghost" : "model" }),
       ];
     }
     return [
-      ...(layer.isGhost ? [] : [Plot.ruleX(rows, byRun(rows, { ...band, stroke, strokeOpacity: 0.5 }))]),
-      Plot.dot(rows, byRun(rows, { x, y: value("predicted"), stroke, symbol: "times", r: 4, ...dash, className: layer.isGhost ? "ghost" : "model" })),
+      ...(layer.hasBands ? [Plot.ruleX(rows, byRun(rows, { ...band, stroke, strokeOpacity: 0.5 }, isMany))] : []),
+      Plot.dot(rows, byRun(rows, { x, y: value("predicted"), stroke, symbol: "times", r: 4, ...dash, className: layer.isGhost ? "ghost" : "model" }, isMany)),
     ];
   });
 }

@@ -5,6 +5,7 @@ import { html, useState } from "../html.js";
 import { LedgerCharts } from "../chart/ledger_chart.js";
 import { ledgerLines } from "../chart/ledger_lines.js";
 import { t } from "../language/language.js";
+import { Clauses } from "../part/clauses.js";
 import { Flags } from "../part/flags.js";
 import { Headline } from "../part/headline.js";
 import { Ledger } from "../part/ledger.js";
@@ -13,11 +14,8 @@ import { ModelTable } from "../part/model_table.js";
 import { isReport } from "../rest/answers.js";
 import { discover, extend } from "../rest/routes.js";
 import { address } from "../route.js";
-import { clauses } from "../words/clauses.js";
-import { capital, raised } from "../words/quantity.js";
+import { sentence } from "../words/clauses.js";
 
-/** So many clauses of an answer are shown at first. */
-const FIRST_CLAUSES = 3;
 /** So many steps are shown at first. */
 const FIRST_STEPS = 3;
 
@@ -68,17 +66,6 @@ function StudyFailure(/** @type {{ study: any }} */ { study }) {
     <p class="error">${sentence(study.failure.reason)}</p>
     <p><b>What to do:</b> ${sentence(study.failure.advice)}</p>
     ${!isReport && html`<p><a class="button main" href=${address(["new"], { study: study.id })}>Edit and start again</a></p>`}</section>`;
-}
-
-const sentence = (/** @type {string} */ text) => capital(raised(/[.!?]$/.test(text) ? text : `${text}.`));
-
-/** A long answer of the service by its clauses: the first ones, and the others folded. */
-function Clauses(/** @type {{ text: string }} */ { text }) {
-  const all = clauses(text);
-  const later = all.slice(FIRST_CLAUSES);
-  const paragraphs = (/** @type {string[]} */ some) => some.map((clause) => html`<p>${sentence(clause)}</p>`);
-  return html`${paragraphs(all.slice(0, FIRST_CLAUSES))}
-    ${later.length > 0 && html`<details><summary>More</summary>${paragraphs(later)}</details>`}`;
 }
 
 /** The first steps; the others are folded. */

@@ -22,8 +22,8 @@ export const raised = (/** @type {string} */ text) => text.replace(/\^([23])/g, 
 /** `drawbar_pull` as words. */
 export const words = (/** @type {string} */ name) => name.replaceAll("_", " ");
 
-/** A sentence begins with a capital, unless it begins with a name of the program. */
-export const capital = (/** @type {string} */ text) => (/^[a-z0-9]*_/.test(text) ? text : text.charAt(0).toUpperCase() + text.slice(1));
+/** A sentence begins with a capital, unless it begins with a name of the program or a symbol. */
+export const capital = (/** @type {string} */ text) => (/^([a-z0-9]*_|[a-z]\d?(,| and | is | lies ))/.test(text) ? text : text.charAt(0).toUpperCase() + text.slice(1));
 
 /** How names of parameters spell a unit at their end: `Pa/m` as `pa_m`, `1/m` as `per_m`, `kg/m^3` as `kg_m3`. */
 const spelt = (/** @type {string} */ unit) => unit.toLowerCase().replace(/^1\//, "per_").replaceAll("^", "").replace(/[^a-z0-9]+/g, "_");
