@@ -204,6 +204,8 @@ export const WORDS = {
   "Rows after": "Zeilen danach",
   "rows {0} to {1} of {2}": "Zeilen {0} bis {1} von {2}",
   "at a slip angle of {0}": "bei einem Schräglaufwinkel von {0}",
+  "The comparison of the models": "Der Vergleich der Modelle",
+  "The error ledger": "Das Fehlerbuch",
   "How large the error is": "Wie groß der Fehler ist",
   "How the error falls": "Wie der Fehler fällt",
   "in 90 % interval": "im 90-%-Intervall",

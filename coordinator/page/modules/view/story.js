@@ -8,13 +8,16 @@ import { t } from "../language/language.js";
 import { Clauses } from "../part/clauses.js";
 import { Flags } from "../part/flags.js";
 import { Headline } from "../part/headline.js";
-import { Ledger } from "../part/ledger.js";
+import { Later } from "../part/later.js";
 import { Failure } from "../part/message.js";
-import { ModelTable } from "../part/model_table.js";
 import { isReport } from "../rest/answers.js";
 import { discover, extend } from "../rest/routes.js";
 import { address } from "../route.js";
 import { sentence } from "../words/clauses.js";
+
+// Tables that most stories have not.
+const modelTable = () => import("../part/model_table.js").then((module) => module.ModelTable);
+const ledger = () => import("../part/ledger.js").then((module) => module.Ledger);
 
 /** So many steps are shown at first. */
 const FIRST_STEPS = 3;
@@ -47,9 +50,9 @@ export function Story({ study, model, reload }) {
         <${Steps} steps=${isAtWork ? [] : story.next.steps} study=${study} model=${model} reload=${reload} />
         ${isReport && story.next.steps.some((/** @type {any} */ step) => step.command) && html`<p class="note">Commands run in the folder of this report.</p>`}</section>
     </div>
-    ${study.models && html`<${ModelTable} comparison=${study.models} />`}
+    ${study.models && html`<${Later} title=${t`The comparison of the models`} load=${modelTable} comparison=${study.models} />`}
     ${lines.length > 1 && html`<h2>How the error falls</h2><${LedgerCharts} study=${study} lines=${lines} />`}
-    ${lines.length === 1 && !study.models && html`<h2>How large the error is</h2><${Ledger} study=${study} lines=${lines} />`}
+    ${lines.length === 1 && !study.models && html`<h2>How large the error is</h2><${Later} title=${t`The error ledger`} load=${ledger} study=${study} lines=${lines} />`}
     <${Flags} study=${study} />`;
 }
 
