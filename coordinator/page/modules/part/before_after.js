@@ -17,10 +17,10 @@ import { channelName } from "../words/quantity.js";
 const LEAST_SLIPS = 3;
 
 /** The conditions of which one level is drawn, by key. */
-const PLACES = {
-  wheel_load_n: (/** @type {string} */ load) => t`at a wheel load of ${load}`,
-  slip_angle_deg: (/** @type {string} */ angle) => t`at a slip angle of ${angle}`,
-};
+const PLACES = /** @type {Record<string, ((level: string) => string) | undefined>} */ ({
+  wheel_load_n: (load) => t`at a wheel load of ${load}`,
+  slip_angle_deg: (angle) => t`at a slip angle of ${angle}`,
+});
 
 /** @param {{ study: any, model: any, channel: string }} properties */
 export function BeforeAfter({ study, model, channel }) {
@@ -54,7 +54,7 @@ export function clearest(now, before) {
   const places = wheels.flatMap((wheel) => {
     const own = now.filter((row) => row.wheel === wheel);
     const found = groups(own);
-    const name = PLACES[/** @type {keyof typeof PLACES} */ (found.colourKey)];
+    const name = PLACES[found.colourKey];
     const levels = name ? found.colours : [null];
     return levels.map((level, k) => {
       const rows = level === null ? own : found.groups.filter((group) => group.colour === k).flatMap((group) => group.rows);
