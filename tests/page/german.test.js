@@ -143,4 +143,14 @@ test("a switch changes the language, the units and the slips, and keeps them", a
   assert.equal(await page.getByLabel("Units", { exact: true }).inputValue(), "lbf, in, psi");
 });
 
+test("what a study found is seen in the list without scrolling it sideways", async () => {
+  await page.getByLabel("Language", { exact: true }).selectOption("de");
+  await page.getByRole("link", { name: "Studien", exact: true }).click();
+  const found = page.locator("td[data-label=gefunden] .found").first();
+  await found.waitFor();
+  const box = await found.boundingBox();
+  assert.ok(box.x + box.width <= 1280, `${box.x + box.width} px`);
+  assert.equal(await sideways(page), 0);
+});
+
 test("nothing went wrong on the way", () => assert.deepEqual(tab.faults, []));

@@ -87,6 +87,17 @@ test("an explanation shows what it predicts before it is computed, and a click a
   await page.locator(".ghosts .ghost").first().waitFor({ state: "attached" });
   assert.match(await page.locator(".ghosts .note").first().textContent(), /Dashed: what janosi_hanamoto would predict/);
   await shot(page, "hidden-effects");
+  // Every picture is seen beside the list, and no words run into each other on a narrow screen.
+  assert.equal(await page.locator(".ghosts figure").count(), 3);
+  const hidden = await page.locator(".ghosts").evaluate((ghosts) => ghosts.scrollHeight - ghosts.clientHeight);
+  assert.ok(hidden <= 0, `${hidden} px of the pictures are hidden`);
+  await page.setViewportSize({ width: 400, height: 800 });
+  const apart = await page.locator(".explanations tbody tr").evaluateAll((rows) => rows.map((row) => {
+    const [probability, strength] = [".number", "td:nth-child(4)"].map((part) => row.querySelector(part)?.getBoundingClientRect());
+    return strength ? strength.left - probability.right : 1;
+  }));
+  assert.ok(apart.every((gap) => gap > 0), JSON.stringify(apart));
+  await page.setViewportSize({ width: 1280, height: 900 });
   await page.getByRole("button", { name: "add janosi_hanamoto" }).click();
   await page.getByRole("button", { name: "Not now" }).click();
   await page.getByRole("button", { name: "add janosi_hanamoto" }).click();
@@ -109,6 +120,11 @@ test("the story begins with the error before and after, and the picture of both 
   assert.match(await found.locator("h2").textContent(), / of held-out runs: error [\d.]+\u00a0→\u00a0[\d.]+\u00a0N.* with one more effect\.$/);
   assert.match(await found.textContent(), /shear stress needs displacement along the rim to build up, shear modulus 9\.\d+ ± 0\.\d+ mm/);
   await found.locator(".model path").first().waitFor({ state: "attached" });
+  // What was wrong, what was missing, how sure that is and what it bought: on a screen of 800 lines, with the picture.
+  for (const part of ["h2", "b", ".errors", ".bars", ".plot svg"]) {
+    const { y, height } = await found.locator(part).first().boundingBox();
+    assert.ok(y + height <= 800, `${part} ends at ${y + height} px`);
+  }
   assert.equal(await found.locator(".legend").getByText(/^(base|with janosi_hanamoto)$/).count(), 2);
   assert.ok((await page.locator(".three > .card").last().locator("> ol > li").count()) <= 3);
   await shot(page, "hidden-story");

@@ -33,12 +33,13 @@ test("the headline of a searched model names what is missing in plain words, or 
     const model = { id: 1, story: story(missing, [channel("drawbar_pull", isCalm)]) };
     return headline(model, errorChanges({ ledger: LEDGER, fixed_sigma: SIGMA }, model));
   };
-  const error = " (drawbar pull of held-out runs: error 11.7\u00a0N)";
+  const error = " (drawbar pull of held-out runs: error 11.7\u00a0N, noise 1.2\u00a0N)";
   assert.equal(said({ verdict: "named", named: [JANOSI] }), `Something is missing: shear stress needs displacement to build up${error}`);
   assert.equal(said({ verdict: "class", named: [JANOSI, JANOSI] }), `One of 2 effects is missing, and the data do not tell which${error}`);
   assert.equal(said({ verdict: "undecided" }), `Whether something is missing is undecided${error}`);
   assert.equal(said({ verdict: "nothing_detectable" }, true), `The model explains the runs to within the noise${error}`);
-  assert.equal(said({}), `The model was not searched for a missing effect${error}`);
+  // What is wrong comes first where nobody has searched.
+  assert.equal(said({}), "Drawbar pull of held-out runs is off by 11.7\u00a0N (noise 1.2\u00a0N); what is missing was not searched for");
 });
 
 test("probabilities of one search add up to 1 with all others together", () => {
@@ -54,7 +55,10 @@ test("the picture has the load at which the models differ most", () => {
     run: `${load} ${slip}`, wheel: "w", slip, wheel_load_n: load, sled_speed_m_s: 0.01, slip_angle_deg: 0, measured: 10, predicted });
   const rows = (/** @type {number} */ ofHeavy) => [60, 120].flatMap((load) => [0.1, 0.3, 0.5].map((slip) => row(load, slip, load === 120 ? ofHeavy : 9)));
   const found = clearest(rows(10), rows(4));
-  assert.deepEqual([found.load, found.runs.size, found.wheel], ["120 N", 3, null]);
+  assert.deepEqual([found.at, found.runs.size, found.wheel], ["at a wheel load of 120 N", 3, null]);
+  // Of one load, the slip angle.
+  const angles = (/** @type {number} */ ofSkew) => [0, 45].flatMap((angle) => [0.1, 0.3, 0.5].map((slip) => ({ ...row(60, slip, angle === 45 ? ofSkew : 9), run: `${angle} ${slip}`, slip_angle_deg: angle })));
+  assert.equal(clearest(angles(10), angles(4)).at, "at a slip angle of 45°");
   // Two slips are no curve: all runs are drawn.
-  assert.equal(clearest(rows(10).slice(0, 2), rows(4).slice(0, 2)).load, null);
+  assert.equal(clearest(rows(10).slice(0, 2), rows(4).slice(0, 2)).at, null);
 });

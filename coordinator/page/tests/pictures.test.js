@@ -6,6 +6,7 @@ import vm from "node:vm";
 // The vendored libraries are scripts that leave their names behind, as in the document.
 vm.runInThisContext(readFileSync(new URL("../vendor/d3.js", import.meta.url), "utf8"));
 const { natsWords, shownNats } = await import("../modules/chart/information_map.js");
+const { moved, nearest, outline } = await import("../modules/chart/merged.js");
 const { scaleOf, ticksOf } = await import("../modules/chart/pairs.js");
 const { tickWords } = await import("../modules/words/quantity.js");
 
@@ -41,4 +42,22 @@ test("labels of ticks stay in their cell and apart", () => {
       assert.equal(new Set(values.map(tickWords)).size, values.length, `${low} to ${high}: ${values.map(tickWords)}`);
     }
   }
+});
+
+test("an element of a mark becomes a part of one path, at its place", () => {
+  const element = (/** @type {string} */ tagName, /** @type {Record<string, string>} */ attributes) => ({ tagName, getAttribute: (/** @type {string} */ name) => attributes[name] ?? null });
+  const place = ({ x, y, d }) => [x, y, d];
+  assert.deepEqual(place(outline(element("circle", { cx: "10", cy: "5", r: "2" }))), [10, 5, "M8,5a2,2 0 1,0 4,0a2,2 0 1,0 -4,0"]);
+  assert.deepEqual(place(outline(element("rect", { x: "1", y: "2", width: "4", height: "6" }))), [3, 5, "M1,2h4v6h-4Z"]);
+  assert.deepEqual(place(outline(element("line", { x1: "1", y1: "2", x2: "1", y2: "8" }))), [1, 5, "M1,2L1,8"]);
+  const symbol = "M-1,-1h2v2h-2Z";
+  assert.deepEqual(place(outline(element("path", { transform: "translate(10.5,-3)", d: symbol }))), [10.5, -3, "M9.5,-4h2v2h-2Z"]);
+  assert.equal(moved("M2,0A2,2,0,1,1,-2,0L1e-3,4Z", 10, 20), "M12,20A2,2,0,1,1,8,20L10.001,24Z");
+});
+
+test("a pointer means the nearest of merged marks, and none far away", () => {
+  const marks = [{ run: "a", x: 10, y: 10, reach: 6, d: "" }, { run: "b", x: 18, y: 10, reach: 6, d: "" }];
+  assert.equal(nearest(marks, 13, 10), "a");
+  assert.equal(nearest(marks, 15, 10), "b");
+  assert.equal(nearest(marks, 80, 10), undefined);
 });

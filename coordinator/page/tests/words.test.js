@@ -3,10 +3,12 @@ import { test } from "node:test";
 
 import { table } from "../modules/chart/download.js";
 import { groups } from "../modules/words/group.js";
+import { flagWords } from "../modules/part/flags.js";
+import { clauses } from "../modules/words/clauses.js";
 import { levels, levelWords } from "../modules/words/level.js";
 import { measuredQuantities, statementOf } from "../modules/words/predicted_quantity.js";
 import { meanAndSpread, parameterTitle, parameterValue, parameterValues, shownParameter } from "../modules/words/parameter.js";
-import { digits, duration, meanAndSd, numberOf, parameterName, probability, shown, size, tickWords, withSd } from "../modules/words/quantity.js";
+import { digits, duration, meanAndSd, numberOf, parameterName, probability, raised, shown, size, tickWords, withSd } from "../modules/words/quantity.js";
 import { meanErrorSd, residualSds } from "../modules/words/residual.js";
 import { progressWords } from "../modules/words/state.js";
 
@@ -95,7 +97,34 @@ test("runs are grouped by the speed that the rig holds", () => {
   assert.deepEqual(sled.colours, ["60 N", "120 N"]);
   const rim = groups([run(0, 60, 0.02), run(0.5, 60, 0.01), run(0.75, 60, 0.005), run(0, 60, 0.08)]);
   assert.deepEqual(rim.groups.map((g) => g.rows.length), [3, 1]);
-  assert.deepEqual(rim.symbols, ["rim 20 mm/s", "rim 80 mm/s"]);
+  assert.deepEqual(rim.colours, ["rim 20 mm/s", "rim 80 mm/s"]);
+});
+
+test("where the wheel load has one level, colours tell the condition that has most", () => {
+  const run = (/** @type {number} */ wheel_load_n, /** @type {number} */ slip_angle_deg) => ({
+    run: "", wheel: "w", slip: 0.1, wheel_load_n, sled_speed_m_s: 0.01, slip_angle_deg });
+  const one = groups([0, 15, 45].flatMap((angle) => [run(60, angle), run(60, angle)]));
+  assert.deepEqual([one.colours, one.symbols, one.colourKey, one.single], [["0°", "15°", "45°"], [""], "slip_angle_deg", "60 N"]);
+  assert.deepEqual(one.groups.map((g) => g.colour), [0, 1, 2]);
+  const two = groups([0, 15, 45].flatMap((angle) => [run(60, angle), run(120, angle)]));
+  assert.deepEqual([two.colours, two.colourKey, two.single], [["60 N", "120 N"], "wheel_load_n", null]);
+});
+
+test("numbers and units of the service are written as people write them", () => {
+  assert.equal(raised("1500 kg/m^3 (p = 7e-7 among 9, p < 1e-12): by -0.5 and -2"), "1500 kg/m³ (p = 7·10⁻⁷ among 9, p < 10⁻¹²): by −0.5 and −2");
+  assert.equal(raised("sinkage_m = 0.062220742972120435 m and 0.0622"), "sinkage_m = 0.06222 m and 0.0622");
+  // Names and dates stay as they are.
+  assert.equal(raised("next-41 of 2026-11-27, one-2e4b"), "next-41 of 2026-11-27, one-2e4b");
+});
+
+test("a sentence is taken apart at its semicolons, but not within brackets", () => {
+  assert.deepEqual(clauses("a was missing (P > 0.999; robust) and is added; beyond that, nothing"), ["a was missing (P > 0.999; robust) and is added", "beyond that, nothing"]);
+  assert.deepEqual(clauses("one of a, b"), ["one of a, b"]);
+});
+
+test("a flag does not repeat the name of the model whose flags are listed", () => {
+  assert.equal(flagWords("cmu+side_bulldozing: the data pull n", "cmu+side_bulldozing"), "the data pull n");
+  assert.equal(flagWords("cmu: the data pull n", undefined), "cmu: the data pull n");
 });
 
 test("against the load, runs of one slip and speed are a line, and the colour tells the slip", () => {

@@ -10,11 +10,16 @@ import { spanWords } from "./condition.js";
 import { Entry, Figure, fileName } from "./figure.js";
 import { glyph } from "./glyph.js";
 import { Plot, STYLE } from "./library.js";
+import { MANY } from "./merged.js";
 import { LEAST_LINE, meanOf, places } from "./place.js";
 import { byRun, pointable } from "./runs.js";
 
 /** Between computed conditions a line bends without a kink, and without going beyond its ends. */
 const CURVE = "monotone-x";
+/** The height of a low picture [px]. */
+const LOW = 150;
+/** Bands of more lines of several models hide each other. */
+const MOST_BANDS = 8;
 /** More levels are not named in the legend. */
 const MOST_NAMES = 10;
 
@@ -22,16 +27,17 @@ const MOST_NAMES = 10;
  * @typedef {{ name: string, colour: string | null, rows: any[], isGhost?: boolean }} Layer
  *   colour: of all its lines; null: each group of runs has its own.
  * @typedef {import("./surface_curves.js").SurfaceCurves} Moving
- * @param {{ channel: string, wheel: string | null, measurements: any[], layers: Layer[], axis: import("./condition.js").ConditionAxis, name: string, moving?: Moving, title?: string }} properties
- *   layers: models, each with the rows of its comparison. measurements: each of them once.
+ * @param {{ channel: string, wheel: string | null, measurements: any[], layers: Layer[], axis: import("./condition.js").ConditionAxis, name: string, moving?: Moving, title?: string, isLow?: boolean }} properties
+ *   layers: models, each with the rows of its comparison. measurements: each of them once. isLow: as low as it can be read.
  */
-export function ChannelChart({ channel, wheel, measurements, layers, axis, name, moving, title: stated }) {
+export function ChannelChart({ channel, wheel, measurements, layers, axis, name, moving, title: stated, isLow = false }) {
   const own = (/** @type {any[]} */ rows) => rows.filter((r) => r.channel === channel && (wheel === null || r.wheel === wheel));
   const measured = own(measurements);
   const quantity = shown(measured[0].unit);
   const found = useMemo(() => groups(measured, axis.key), [measurements, channel, wheel, axis.key]);
-  const title = stated ?? t`${[channelName(channel), wheel === null ? "" : t`wheel ${wheel}`].filter(Boolean).join(", ")}, measured and computed, by ${axis.title}`;
-  const draw = (/** @type {number} */ width) => picture({ width, layers: layers.map((l) => ({ ...l, rows: own(l.rows) })), measured, found, axis, quantity, channel, moving });
+  const what = [channelName(channel), wheel === null ? "" : t`wheel ${wheel}`].filter(Boolean).join(", ");
+  const title = stated ?? (isLow ? what : t`${what}, measured and computed, by ${axis.title}`);
+  const draw = (/** @type {number} */ width) => picture({ width, layers: layers.map((l) => ({ ...l, rows: own(l.rows) })), measured, found, axis, quantity, channel, moving, isLow });
   const drawn = (/** @type {any} */ plot) => {
     const release = pointable(plot, { runsIn, words: (from, to) => spanWords(axis, from, to) });
     const curves = found.groups.map((group) => ({ rows: group.rows, stroke: colour(group.colour) }));
@@ -55,7 +61,7 @@ export function ChannelChart({ channel, wheel, measurements, layers, axis, name,
     deps=${[layers.map((l) => `${l.name} ${l.rows.length}`).join(), layers.at(-1)?.rows, measurements, axis.key]}
     draw=${draw} rows=${() => table(layers, own)}
     onDrawn=${drawn}
-    legend=${html`${colours}${symbols}
+    legend=${html`${found.single && html`<span>${found.single}</span>`}${colours}${symbols}
       ${hasHoldout && html`<${Entry} glyph=${html`<circle cx="8" cy="8" r="4" fill="none" stroke="currentColor" stroke-width="2" />`}>held out<//>`}
       ${layers.filter((l) => l.colour !== null).map((l) => html`<${Entry} glyph=${html`<path d="M0 8h16" stroke=${l.colour} stroke-width="2" stroke-dasharray=${l.isGhost ? "3 3" : ""} />`}>${l.name}<//>`)}`} />`;
 }
@@ -68,34 +74,39 @@ function table(/** @type {Layer[]} */ layers, /** @type {(rows: any[]) => any[]}
   })));
 }
 
-/** @param {{ width: number, layers: Layer[], measured: any[], found: ReturnType<typeof groups>, axis: any, quantity: any, channel: string, moving?: Moving }} properties */
-function picture({ width, layers, measured, found, axis, quantity, channel, moving }) {
+/** @param {{ width: number, layers: Layer[], measured: any[], found: ReturnType<typeof groups>, axis: any, quantity: any, channel: string, moving?: Moving, isLow: boolean }} properties */
+function picture({ width, layers, measured, found, axis, quantity, channel, moving, isLow }) {
   const x = (/** @type {any} */ r) => r[axis.key] * axis.scale;
   const value = (/** @type {string} */ key) => (/** @type {any} */ r) => (r[key] === null || r[key] === undefined ? NaN : r[key] * quantity.scale);
   const place = new Map(found.groups.flatMap((group) => group.rows.map((r) => [r.run, group])));
-  const marks = layers.flatMap((layer) => layerMarks(layer, place, x, value));
+  const isMany = measured.length > MANY;
+  const hasBands = layers.length === 1 || layers.length * found.groups.length <= MOST_BANDS;
+  const marks = layers.flatMap((layer) => layerMarks({ ...layer, hasBands: hasBands && !layer.isGhost }, place, x, value, isMany));
   const isLayered = layers.some((l) => l.colour !== null && !l.isGhost);
   const dots = (/** @type {any[]} */ rows, /** @type {any} */ look) => found.groups.map((group) => {
     const own = rows.filter((r) => place.get(r.run) === group);
     const sign = isLayered ? { symbol: symbol(group.colour), ...look("var(--measured)") } : { symbol: symbol(group.symbol), ...look(colour(group.colour)) };
-    return Plot.dot(own, byRun(own, { x, y: value("measured"), r: 4.2, ...sign }));
+    return Plot.dot(own, byRun(own, { x, y: value("measured"), r: 4.2, ...sign }, isMany));
   });
+  // Edges would be drawn over the signs beside them where these are one element.
+  const edge = isMany ? {} : { stroke: "var(--paper)", strokeWidth: 0.7 };
+  const predictions = layers.map((layer) => ({ name: layer.name, ofRun: new Map(layer.rows.map((r) => [r.run, r.predicted])) }));
   const tip = (/** @type {any} */ r) => [
     runName(r),
     conditionWords(r),
     `${t`measured`} ${digits(r.measured * quantity.scale)} ${quantity.unit}`,
-    ...layers.map((l) => {
-      const own = l.rows.find((o) => o.run === r.run);
-      return own?.predicted === undefined || own?.predicted === null ? "" : `${l.name} ${digits(own.predicted * quantity.scale)} ${quantity.unit}`;
+    ...predictions.map(({ name, ofRun }) => {
+      const predicted = ofRun.get(r.run);
+      return predicted === undefined || predicted === null ? "" : `${name} ${digits(predicted * quantity.scale)} ${quantity.unit}`;
     }),
   ].filter(Boolean).join("\n");
   return Plot.plot({
-    width, height: Math.max(240, Math.min(360, 0.62 * width)), marginTop: 26, marginLeft: 56, marginBottom: 40, inset: 7, grid: true, style: STYLE,
+    width, height: isLow ? LOW : Math.max(240, Math.min(360, 0.62 * width)), marginTop: 26, marginLeft: 56, marginBottom: 40, inset: 7, grid: true, style: STYLE,
     x: { label: titled(axis.title, axis.unit), labelArrow: "none", labelAnchor: "center", nice: true },
     y: { label: titled(channelName(channel), quantity.unit), labelArrow: "none", nice: true, ...(moving ? { domain: reach(layers, measured, quantity, moving) } : {}) },
     marks: [
       ...marks,
-      ...dots(measured.filter((r) => r.use !== "holdout"), (/** @type {string} */ c) => ({ fill: c, stroke: "var(--paper)", strokeWidth: 0.7 })),
+      ...dots(measured.filter((r) => r.use !== "holdout"), (/** @type {string} */ c) => ({ fill: c, ...edge })),
       ...dots(measured.filter((r) => r.use === "holdout"), (/** @type {string} */ c) => ({ fill: "var(--paper)", stroke: c, strokeWidth: 1.8 })),
       Plot.tip(measured, Plot.pointer({ x, y: value("measured"), title: tip, maxRadius: 14, fill: "var(--panel)", stroke: "var(--rule)" })),
     ],
@@ -110,7 +121,7 @@ function reach(/** @type {Layer[]} */ layers, /** @type {any[]} */ measured, /**
 }
 
 /** The lines of a model: one for each group of runs. */
-function layerMarks(/** @type {Layer} */ layer, /** @type {Map<string, any>} */ place, /** @type {any} */ x, /** @type {any} */ value) {
+function layerMarks(/** @type {Layer & { hasBands: boolean }} */ layer, /** @type {Map<string, any>} */ place, /** @type {any} */ x, /** @type {any} */ value, /** @type {boolean} */ isMany) {
   const known = layer.rows.filter((r) => r.predicted !== null && r.predicted !== undefined && place.has(r.run));
   const all = [...new Set(known.map((r) => place.get(r.run)))];
   return all.flatMap((group) => {
@@ -121,13 +132,13 @@ function layerMarks(/** @type {Layer} */ layer, /** @type {Map<string, any>} */ 
     const means = atEqual(rows, x);
     if (means.length >= LEAST_LINE) {
       return [
-        ...(layer.isGhost ? [] : [Plot.areaY(means, { ...band, curve: CURVE, fill: stroke, fillOpacity: 0.16 })]),
+        ...(layer.hasBands ? [Plot.areaY(means, { ...band, curve: CURVE, fill: stroke, fillOpacity: 0.16 })] : []),
         Plot.lineY(means, { x, y: value("predicted"), curve: CURVE, stroke, ...dash, className: layer.isGhost ? "ghost" : "model" }),
       ];
     }
     return [
-      ...(layer.isGhost ? [] : [Plot.ruleX(rows, byRun(rows, { ...band, stroke, strokeOpacity: 0.5 }))]),
-      Plot.dot(rows, byRun(rows, { x, y: value("predicted"), stroke, symbol: "times", r: 4, ...dash, className: layer.isGhost ? "ghost" : "model" })),
+      ...(layer.hasBands ? [Plot.ruleX(rows, byRun(rows, { ...band, stroke, strokeOpacity: 0.5 }, isMany))] : []),
+      Plot.dot(rows, byRun(rows, { x, y: value("predicted"), stroke, symbol: "times", r: 4, ...dash, className: layer.isGhost ? "ghost" : "model" }, isMany)),
     ];
   });
 }

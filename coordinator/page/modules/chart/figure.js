@@ -4,7 +4,9 @@ import { html, useEffect, useRef, useState } from "../html.js";
 import { t } from "../language/language.js";
 import { light } from "../selection.js";
 import { words } from "../words/quantity.js";
-import { csv, png, save, svg } from "./download.js";
+
+/** Who reads a page saves no file yet. */
+const files = () => import("./download.js");
 
 /** @typedef {Record<string, string | number | boolean | null | undefined>} Row */
 
@@ -46,8 +48,11 @@ export function Figure({ title, name, deps, draw, rows, note, legend, onDrawn })
     return onDrawn?.(plot) ?? undefined;
   }, [width, ...deps]);
   const figure = () => /** @type {HTMLElement} */ (place.current?.closest("figure"));
+  const saved = (/** @type {"svg" | "csv"} */ kind, /** @type {typeof import("./download.js")} */ { csv, save, svg }) =>
+    save(`${name}.${kind}`, kind === "svg" ? svg(figure()) : csv(rows?.() ?? []));
   const savePng = async () => {
     try {
+      const { png, save } = await files();
       save(`${name}.png`, await png(figure()));
     } catch (error) {
       setFailure(t`this picture cannot be saved: ${/** @type {Error} */ (error).message}`);
@@ -60,9 +65,9 @@ export function Figure({ title, name, deps, draw, rows, note, legend, onDrawn })
       ${failure && html`<p class="error">${failure}</p>`}
       ${legend && html`<div class="legend">${legend}</div>`}
       <div class="downloads" role="toolbar" aria-label=${t`download: ${title}`} onKeyDown=${roam}>
-        <button type="button" onClick=${() => save(`${name}.svg`, svg(figure()))}>SVG</button>
+        <button type="button" onClick=${async () => saved("svg", await files())}>SVG</button>
         <button type="button" tabindex="-1" onClick=${savePng}>PNG</button>
-        ${rows && html`<button type="button" tabindex="-1" onClick=${() => save(`${name}.csv`, csv(rows()))}>CSV</button>`}
+        ${rows && html`<button type="button" tabindex="-1" onClick=${async () => saved("csv", await files())}>CSV</button>`}
       </div>
     </figure>`;
 }

@@ -8,6 +8,7 @@ import { colour, symbol } from "./colour.js";
 import { spanWords } from "./condition.js";
 import { Figure, fileName } from "./figure.js";
 import { Plot, STYLE } from "./library.js";
+import { MANY } from "./merged.js";
 import { byRun, pointable } from "./runs.js";
 
 /** The trends of the diagnosis by the axis that they run along. */
@@ -16,6 +17,7 @@ const LEVEL = 0.01;
 
 /** @param {{ channel: string, rows: any[], axis: any, trends: any[], name: string }} properties */
 export function ResidualChart({ channel, rows, axis, trends, name }) {
+  const isMany = rows.length > MANY;
   const judged = rows.filter((r) => r.predicted !== null && r.predicted !== undefined);
   const quantity = shown(rows[0].unit);
   const x = (/** @type {any} */ r) => r[axis.key] * axis.scale;
@@ -36,7 +38,7 @@ export function ResidualChart({ channel, rows, axis, trends, name }) {
       Plot.lineY(line, { x: "x", y: "y", stroke: "var(--alarm)", strokeWidth: 2, className: "trend" }),
       ...wheels.flatMap((wheel, k) => [false, true].map((isHeldOut) => {
         const own = judged.filter((r) => r.wheel === wheel && (r.use === "holdout") === isHeldOut);
-        return Plot.dot(own, byRun(own, { x, y, r: 3.6, symbol: symbol(k), ...(isHeldOut ? { stroke: colour(k), fill: "var(--paper)", strokeWidth: 1.6 } : { fill: colour(k) }) }));
+        return Plot.dot(own, byRun(own, { x, y, r: 3.6, symbol: symbol(k), ...(isHeldOut ? { stroke: colour(k), fill: "var(--paper)", strokeWidth: 1.6 } : { fill: colour(k) }) }, isMany));
       })),
       Plot.tip(judged, Plot.pointer({ x, y, title: (/** @type {any} */ r) => `run ${r.run}\n${minus(digits(y(r)))} ${quantity.unit}`, maxRadius: 12, fill: "var(--panel)", stroke: "var(--rule)" })),
     ],

@@ -2,6 +2,7 @@
 
 import { t } from "../language/language.js";
 import { choose, point, toggle } from "../selection.js";
+import { merge, mergedRunAt } from "./merged.js";
 
 /** A shorter way of the pointer is a click [px]. */
 const LEAST_PX = 5;
@@ -11,12 +12,17 @@ const LEAST_PX = 5;
  * @template {{ run: string }} D
  * @param {D[]} data
  * @param {any} options
+ * @param {boolean} [isMany] whether the picture has so many marks that those of a colour are one element
  */
-export function byRun(data, options) {
+export function byRun(data, options, isMany = false) {
   return {
     ...options,
     render(/** @type {any} */ index, /** @type {any} */ scales, /** @type {any} */ values, /** @type {any} */ dimensions, /** @type {any} */ context, /** @type {any} */ next) {
       const group = next(index, scales, values, dimensions, context);
+      if (isMany && group) {
+        merge(group, (element) => data[element.__data__]?.run);
+        return group;
+      }
       for (const element of group?.children ?? []) {
         const datum = data[element.__data__];
         if (datum) element.dataset.run = datum.run;
@@ -27,7 +33,7 @@ export function byRun(data, options) {
 }
 
 /** The run of the mark under the pointer. */
-const runAt = (/** @type {Event} */ event) => /** @type {SVGElement} */ (event.target).dataset?.run;
+const runAt = (/** @type {SVGSVGElement} */ plot, /** @type {MouseEvent} */ event) => /** @type {SVGElement} */ (event.target).dataset?.run ?? mergedRunAt(plot, event);
 
 /**
  * Lets a picture be pointed at: a mark lights its run, a click chooses it, a drag along x chooses all runs of a region.
@@ -40,15 +46,22 @@ export function pointable(plot, { runsIn, words } = {}) {
   // Ahead of the pointer of a tip, which keeps what it hears to itself.
   const on = (/** @type {string} */ type, /** @type {(event: any) => void} */ listener) =>
     plot.addEventListener(type, listener, { signal: abort.signal, capture: true });
-  on("pointerover", (event) => {
-    const run = runAt(event);
-    if (run && event.buttons === 0) point([run], t`run ${run}`);
-  });
-  on("pointerout", (event) => {
-    if (runAt(event)) point(null);
+  /** @type {string | undefined} */
+  let under;
+  const over = (/** @type {PointerEvent} */ event) => {
+    const run = runAt(plot, event);
+    if (event.buttons !== 0 || run === under) return;
+    under = run;
+    point(run ? [run] : null, run ? t`run ${run}` : "");
+  };
+  on("pointerover", over);
+  on("pointermove", over);
+  on("pointerleave", () => {
+    if (under) point(null);
+    under = undefined;
   });
   on("click", (event) => {
-    const run = runAt(event);
+    const run = runAt(plot, event);
     if (run) toggle(run);
   });
   if (runsIn && words) drag(plot, on, runsIn, words);
@@ -81,7 +94,7 @@ function drag(plot, on, runsIn, words) {
     if (event.button !== 0 || event.pointerType === "touch") return;
     begun = { from: at(event), band: null };
     // The tip of a picture would stay where it is when the pointer goes down beside a mark.
-    if (!runAt(event)) event.stopImmediatePropagation();
+    if (!runAt(plot, event)) event.stopImmediatePropagation();
   });
   on("pointermove", (event) => {
     if (!begun) return;

@@ -143,7 +143,11 @@ export const SENTENCES = {
   "these runs are held out already: choose runs that are fitted":
     "diese Fahrten sind schon zurückgehalten: wählen Sie angepasste Fahrten",
   "they tell little of {0}: its value is that of the prior": "sie sagen wenig über {0}: der Wert ist der des Priors",
-  "too weak to be seen with these data at its usual strength": "in üblicher Stärke zu schwach, um in diesen Daten sichtbar zu sein",
+  "they tell little of {0}: their values are those of the priors": "sie sagen wenig über {0}: ihre Werte sind die der Priors",
+  "The study is paused before its first calibration has finished.": "Die Studie ist angehalten, bevor ihre erste Kalibrierung fertig wurde.",
+  "has the button that resumes it.": "hat den Knopf, der sie fortsetzt.",
+  "almost done: how long the last steps take is not known before": "fast fertig: wie lange die letzten Schritte dauern, ist vorher nicht bekannt",
+  "too weak to be seen with these data at usual strength": "in üblicher Stärke zu schwach, um in diesen Daten sichtbar zu sein",
   "trend: {0} {1} from one end to the other, before the fit compensates":
     "Trend: {0} {1} von einem Ende zum anderen, bevor die Anpassung ausgleicht",
   "tries effects beside a law outside the library": "versucht Effekte neben einem Gesetz außerhalb der Bibliothek",

@@ -16,6 +16,12 @@ import { channelName } from "../words/quantity.js";
 /** Fewer slips make no curve: then all loads are drawn. */
 const LEAST_SLIPS = 3;
 
+/** The conditions of which one level is drawn, by key. */
+const PLACES = /** @type {Record<string, ((level: string) => string) | undefined>} */ ({
+  wheel_load_n: (load) => t`at a wheel load of ${load}`,
+  slip_angle_deg: (angle) => t`at a slip angle of ${angle}`,
+});
+
 /** @param {{ study: any, model: any, channel: string }} properties */
 export function BeforeAfter({ study, model, channel }) {
   const before = lineBefore(study.ledger, model.id)?.calibration ?? null;
@@ -26,17 +32,18 @@ export function BeforeAfter({ study, model, channel }) {
   if (layers.some((layer) => layer.rows === null)) return html`<p class="empty" aria-busy="true">Loading the picture …</p>`;
   const own = layers.at(-1)?.rows.filter((/** @type {any} */ r) => r.channel === channel) ?? [];
   if (own.length === 0) return null;
-  const { wheel, load, runs } = clearest(own, before === null ? own : layers[0].rows.filter((/** @type {any} */ r) => r.channel === channel));
+  const { wheel, at, runs } = clearest(own, before === null ? own : layers[0].rows.filter((/** @type {any} */ r) => r.channel === channel));
   const named = layers.map(({ id, colour, rows }) => ({
     name: modelName(study, study.members.find((/** @type {any} */ m) => m.id === id)), colour, rows: rows.filter((/** @type {any} */ r) => runs.has(r.run)),
   }));
-  const at = [load && t`at a wheel load of ${load}`, wheel && t`wheel ${wheel}`].filter(Boolean).join(", ");
+  const where = [at, wheel && t`wheel ${wheel}`].filter(Boolean).join(", ");
   return html`<${ChannelChart} channel=${channel} wheel=${wheel} measurements=${named.at(-1)?.rows} layers=${named} axis=${CONDITIONS[0]} name=${`${study.name}-before-after`}
-    title=${`${t`${channelName(channel)}, measured and computed`}${at ? `, ${at}` : ""}`} />`;
+    title=${`${t`${channelName(channel)}, measured and computed`}${where ? `, ${where}` : ""}`} />`;
 }
 
 /**
- * The wheel and the load at which the errors of two models differ most, with their runs; without a load where too few slips were run at it.
+ * The wheel and the load, or the slip angle where the load has one level, at which the errors of two models differ most, with their runs;
+ * without it where too few slips were run at it.
  * @param {any[]} now
  * @param {any[]} before
  */
@@ -47,14 +54,16 @@ export function clearest(now, before) {
   const places = wheels.flatMap((wheel) => {
     const own = now.filter((row) => row.wheel === wheel);
     const found = groups(own);
-    return found.colours.map((load, k) => {
-      const rows = found.groups.filter((group) => group.colour === k).flatMap((group) => group.rows);
+    const name = PLACES[found.colourKey];
+    const levels = name ? found.colours : [null];
+    return levels.map((level, k) => {
+      const rows = level === null ? own : found.groups.filter((group) => group.colour === k).flatMap((group) => group.rows);
       const gain = rows.reduce((sum, row) => sum + Math.abs(square(old.get(row.run)) - (now === before ? 0 : square(row))), 0) / rows.length;
-      return { wheel: wheels.length > 1 ? wheel : null, load: found.colours.length > 1 ? load : null, rows, gain };
+      return { wheel: wheels.length > 1 ? wheel : null, at: name && level !== null && levels.length > 1 ? name(level) : null, rows, gain };
     });
   });
   const clear = places.filter(({ rows }) => new Set(rows.map((row) => row.slip)).size >= LEAST_SLIPS);
   const best = clear.reduce((/** @type {typeof places[number] | null} */ most, place) => (most === null || place.gain > most.gain ? place : most), null);
-  const { wheel, load, rows } = best ?? { wheel: null, load: null, rows: now };
-  return { wheel, load, runs: new Set(rows.map((row) => row.run)) };
+  const { wheel, at, rows } = best ?? { wheel: null, at: null, rows: now };
+  return { wheel, at, runs: new Set(rows.map((row) => row.run)) };
 }

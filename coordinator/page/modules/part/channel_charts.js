@@ -4,14 +4,17 @@ import { html, useMemo } from "../html.js";
 import { ChannelChart } from "../chart/channel_chart.js";
 import { CHANNELS } from "../words/quantity.js";
 
-/** @param {{ layers: import("../chart/channel_chart.js").Layer[], axis: import("../chart/condition.js").ConditionAxis, name: string, moving?: import("../chart/channel_chart.js").Moving, small?: boolean, order?: readonly string[] }} properties order: of the channels */
-export function ChannelCharts({ layers, axis, name, moving, small = false, order = CHANNELS }) {
+/** More low pictures stand beside each other, so that all are seen at once. */
+const MOST_ROWS = 3;
+
+/** @param {{ layers: import("../chart/channel_chart.js").Layer[], axis: import("../chart/condition.js").ConditionAxis, name: string, moving?: import("../chart/channel_chart.js").Moving, small?: boolean, isLow?: boolean, order?: readonly string[] }} properties isLow: each as low as it can be read. order: of the channels */
+export function ChannelCharts({ layers, axis, name, moving, small = false, isLow = false, order = CHANNELS }) {
   const rows = useMemo(() => measurements(layers), [layers.map((layer) => layer.name).join(), ...ends(layers)]);
   const wheels = [...new Set(rows.map((r) => r.wheel))];
   const pairs = order.filter((channel) => rows.some((r) => r.channel === channel)).flatMap((channel) =>
     (wheels.length > 1 ? wheels : [null]).filter((w) => w === null || rows.some((r) => r.channel === channel && r.wheel === w)).map((wheel) => ({ channel, wheel })));
-  return html`<div class=${`figures ${small ? "small" : ""}`}>
-    ${pairs.map(({ channel, wheel }) => html`<${ChannelChart} key=${`${channel} ${wheel}`} channel=${channel} wheel=${wheel} measurements=${rows} layers=${layers} axis=${axis} name=${name} moving=${moving} />`)}
+  return html`<div class=${`figures ${small ? "small" : ""} ${isLow && pairs.length > MOST_ROWS ? "narrow" : ""}`}>
+    ${pairs.map(({ channel, wheel }) => html`<${ChannelChart} key=${`${channel} ${wheel}`} channel=${channel} wheel=${wheel} measurements=${rows} layers=${layers} axis=${axis} name=${name} moving=${moving} isLow=${isLow} />`)}
   </div>`;
 }
 

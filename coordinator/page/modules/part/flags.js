@@ -3,7 +3,7 @@
 import { html } from "../html.js";
 import { t } from "../language/language.js";
 import { modelName } from "../words/model.js";
-import { capital, words } from "../words/quantity.js";
+import { capital, raised, words } from "../words/quantity.js";
 
 /** @param {{ study: any }} properties */
 export function Flags({ study }) {
@@ -14,9 +14,10 @@ export function Flags({ study }) {
     const member = study.members.find((/** @type {any} */ m) => m.id === id);
     return member ? modelName(study, member) : t`calibration ${id}`;
   };
+  const current = study.members.find((/** @type {any} */ m) => m.id === study.current);
   return html`
     <h2 class="attention">What deserves attention</h2>
-    ${now.length === 0 ? html`<p>Nothing about the current model.</p>` : html`<${List} flags=${now} />`}
+    ${now.length === 0 ? html`<p>Nothing about the current model.</p>` : html`<${List} flags=${now} model=${current?.name} />`}
     ${old.length > 0 && html`<details><summary>${old.length === 1 ? t`1 flag` : t`${old.length} flags`} of models that are no longer the current one</summary>
       ${[...new Set(old.map((/** @type {any} */ f) => f.calibration))].map((id) => html`<h3>${name(/** @type {number} */ (id))}</h3><${List} flags=${old.filter((/** @type {any} */ f) => f.calibration === id)} />`)}
     </details>`}`;
@@ -29,5 +30,11 @@ const KINDS = /** @type {Record<string, string>} */ ({
   worker: t`a worker's results differ`, interpolation_beats: t`interpolation predicts better`, plates_conflict: t`plates against wheel runs`,
 });
 
-const List = (/** @type {{ flags: any[] }} */ { flags }) =>
-  html`<ul class="flags">${flags.map((f) => html`<li><b>${capital(KINDS[f.kind] ?? words(f.kind))}</b>: ${f.text}</li>`)}</ul>`;
+/** @param {{ flags: any[], model?: string }} properties model: whose name is not said again in each line */
+const List = ({ flags, model }) =>
+  html`<ul class="flags">${flags.map((f) => html`<li><b>${capital(KINDS[f.kind] ?? words(f.kind))}</b>: ${flagWords(f.text, model)}</li>`)}</ul>`;
+
+/** The text of a flag as people write numbers, without the name of the model that it begins with. */
+export function flagWords(/** @type {string} */ text, /** @type {string | undefined} */ model) {
+  return raised(model !== undefined && text.startsWith(`${model}: `) ? text.slice(model.length + 2) : text);
+}

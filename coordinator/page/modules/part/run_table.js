@@ -1,18 +1,28 @@
 // The table of runs: measured, computed, interval, residual.
 
-import { html } from "../html.js";
+import { html, useState } from "../html.js";
 import { t } from "../language/language.js";
 import { slipWords } from "../words/condition.js";
 import { digits, minus, shown, short, titled } from "../words/quantity.js";
 import { point, toggle } from "../selection.js";
 
+/** So many rows are shown at once: more cells are slow to make. */
+const PAGE_ROWS = 120;
+
 /** @param {{ rows: any[] }} properties rows of a comparison */
 export function RunTable({ rows }) {
+  const [first, setFirst] = useState(0);
+  const last = Math.min(first + PAGE_ROWS, rows.length);
+  const go = (/** @type {number} */ to) => () => setFirst(to);
   return html`
+    ${rows.length > PAGE_ROWS && html`<div class="actions" role="group" aria-label="Rows of the table">
+      <button type="button" disabled=${first === 0} onClick=${go(first - PAGE_ROWS)}>Rows before</button>
+      <button type="button" disabled=${last === rows.length} onClick=${go(first + PAGE_ROWS)}>Rows after</button>
+      <span class="note" role="status">${t`rows ${first + 1} to ${last} of ${rows.length}`}</span></div>`}
     <div class="scroll" tabindex="0" role="region" aria-label="All runs">
       <table>
         <thead><tr>${[t`run`, t`use`, t`slip`, titled(t`load`, shown("N").unit), titled(t`speed`, shown("m/s").unit), t`channel`, t`measured`, t`model`, t`90 % interval`, t`residual, noise sds`].map((h, k) => html`<th scope="col" class=${k > 1 && k !== 5 ? "number" : ""}>${h}</th>`)}</tr></thead>
-        <tbody>${rows.map((r) => html`<${RunRow} key=${`${r.run} ${r.channel}`} row=${r} />`)}</tbody>
+        <tbody>${rows.slice(first, last).map((r) => html`<${RunRow} key=${`${r.run} ${r.channel}`} row=${r} />`)}</tbody>
       </table>
     </div>`;
 }

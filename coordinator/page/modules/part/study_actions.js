@@ -1,6 +1,5 @@
 // What can be done with a study as a whole: begin again from its files, take it out of the list, delete it for good.
 
-import { save } from "../chart/download.js";
 import { fileName } from "../chart/figure.js";
 import { html, useState } from "../html.js";
 import { t } from "../language/language.js";
@@ -10,6 +9,7 @@ import { address } from "../route.js";
 import { Later } from "./later.js";
 import { Failure } from "./message.js";
 
+const files = () => import("../chart/download.js");
 const detailsForm = () => import("./details_form.js").then((module) => module.DetailsForm);
 const AT_WORK = ["queued", "running", "paused"];
 
@@ -33,7 +33,7 @@ export function StudyActions({ study, reload }) {
     ${isDescribed && html`<${Later} title="Name, author, tags, note" load=${detailsForm} study=${study} reload=${reload} close=${() => setDescribed(false)} />`}
     <div class="actions study-actions" role="group" aria-label="What to do with the study">
       <button type="button" aria-expanded=${isDescribed} onClick=${() => setDescribed(!isDescribed)}>Name, author, tags, note</button>
-      ${study.current !== null && html`<button type="button" onClick=${() => act(async () => save(`${fileName(study.name)}.html`, await reportOf(study.current)), () => undefined)}>Save the report</button>`}
+      ${study.current !== null && html`<button type="button" onClick=${() => act(async () => (await files()).save(`${fileName(study.name)}.html`, await reportOf(study.current)), () => undefined)}>Save the report</button>`}
       <a class="button" href=${address(["new"], { study: study.id })}>Edit and start again</a>
       <${BesideAnother} study=${study} />
       ${!isAtWork && html`<button type="button" onClick=${() => act(() => archive(study.id, study.archived ? "restore" : "archive"), reload)}>${study.archived ? t`Take back into the list` : t`Archive`}</button>`}

@@ -8,12 +8,15 @@ import { progressWords } from "../words/state.js";
 import { Tags } from "./study_details.js";
 import { Table } from "./table.js";
 
-/** An error on fitted rows, above that on held-out rows. */
-const pair = (/** @type {any} */ error, /** @type {(use: any) => number | null | undefined} */ of, scale = 1) =>
-  error && html`${["fit", "holdout"].filter((use) => error[use]).map((use) => {
-    const value = of(error[use]);
-    return html`<div>${errorWords(value === null || value === undefined ? null : value * scale)}</div>`;
-  })}`;
+const USES = ["fit", "holdout"];
+
+/** An error on fitted rows, above that on held-out rows; nothing of a channel that the study has not. */
+function pair(/** @type {any} */ error, /** @type {(use: any) => number | null | undefined} */ of, scale = 1) {
+  const uses = USES.filter((use) => error?.[use]);
+  const values = uses.map((use) => of(error[use]) ?? null);
+  if (values.every((value) => value === null)) return null;
+  return html`${values.map((value) => html`<div>${errorWords(value === null ? null : value * scale)}</div>`)}`;
+}
 
 function State(/** @type {{ study: any }} */ { study }) {
   return html`<span class=${`state ${study.state}`}>${translated(study.state)}</span>
@@ -21,32 +24,36 @@ function State(/** @type {{ study: any }} */ { study }) {
 }
 
 /** What the study found, and what it leaves open. */
-function Found(/** @type {{ study: any }} */ { study }) {
-  if (study.failure) return html`<div class="note">${capital(study.failure.reason.split(" (")[0])}. <b>What to do:</b> ${study.failure.advice}.</div>`;
+function foundBy(/** @type {any} */ study) {
+  if (study.failure) return html`<div class="found">${capital(study.failure.reason.split(" (")[0])}. <div class="note"><b>What to do:</b> ${study.failure.advice}.</div></div>`;
   const found = study.verdict?.short ?? study.models?.split(" (")[0] ?? (study.state === "finished" ? t`no search yet` : "");
-  return html`${capital(found)}${study.verdict?.open && html`<div class="note">${study.verdict.open}</div>`}`;
+  return found && html`<div class="found">${capital(found)}${study.verdict?.open && html`<div class="note">${study.verdict.open}</div>`}</div>`;
 }
 
-/** The day of the submission, as the reader's country writes it. */
-const day = (/** @type {number | null} */ ms) => (ms === null ? "" : html`<span class="whole" title=${new Date(ms).toLocaleString()}>${new Date(ms).toISOString().slice(0, 10)}</span>`);
+/** The day of the submission; pointed at, with the time as the reader's country writes it. */
+function Day(/** @type {{ ms: number | null }} */ { ms }) {
+  if (ms === null) return null;
+  const day = new Date(ms).toISOString().slice(0, 10);
+  return html`<time class="whole" datetime=${day} title=${new Date(ms).toLocaleString()}>${day}</time>`;
+}
 
 /** @param {{ studies: any[], choose: (tag: string) => void }} properties studies: in the order in which they are shown */
 export function StudyTable({ studies, choose }) {
   const channels = CHANNELS.filter((channel) => studies.some((s) => s.error?.fit?.[channel] ?? s.error?.holdout?.[channel]));
+  const columns = channels.map((_, k) => k + 6);
   const rows = studies.map((study) => [
     html`<a class="study-name" href=${address(["studies", study.id, ["finished", "failed"].includes(study.state) ? "story" : "live"])}>${study.name ?? t`study ${study.id}`}</a>
-      <div class="note">study ${study.id}${study.archived ? t`, archived` : ""}${study.details.author && `, ${study.details.author}`}</div>
-      <div><${Tags} tags=${study.details.tags} choose=${choose} /></div>`,
-    day(study.created_ms),
+      <div class="note">study ${study.id}${study.archived ? t`, archived` : ""}${study.details.author && `, ${study.details.author}`} <${Day} ms=${study.created_ms} /></div>
+      ${study.details.tags.length > 0 && html`<div><${Tags} tags=${study.details.tags} choose=${choose} /></div>`}`,
     html`<${State} study=${study} />`,
-    html`${words(study.model_kind ?? t`unknown`)}${study.effects.length > 0 && html`<div class="note">with ${study.effects.map(words).join(", ")}</div>`}`,
-    study.error && html`${["fit", "holdout"].filter((use) => study.error[use]).map((use) => html`<div class="whole">${use === "fit" ? t`fit` : t`held out`}</div>`)}`,
+    foundBy(study),
+    html`<span class="whole">${words(study.model_kind ?? t`unknown`)}</span>${study.effects.length > 0 && html`<div class="note">with ${study.effects.map(words).join(", ")}</div>`}`,
+    study.error && html`${USES.filter((use) => study.error[use]).map((use) => html`<div class="whole">${use === "fit" ? t`fit` : t`held out`}</div>`)}`,
+    study.error ? pair(study.error, (use) => use.all?.rmse_fixed_sigma) : study.state === "finished" ? html`<span class="note">being computed</span>` : null,
     ...channels.map((channel) => pair(study.error, (use) => use[channel]?.rmse, shown(unitOf(channel)).scale)),
-    study.error ? pair(study.error, (use) => use.all?.rmse_fixed_sigma) : html`<span class="note">${study.state === "finished" ? t`being computed` : ""}</span>`,
-    html`<${Found} study=${study} />`,
   ]);
   return html`
     <p class="note">Errors are root mean squares of prediction minus measurement of the current model; 1 × noise is as good as the measurements allow.</p>
-    <${Table} label="Studies" rows=${rows} numbers=${[...channels, "all"].map((_, k) => k + 5)}
-      head=${[t`study`, t`begun`, t`state`, t`model`, t`rows`, ...channels.map((c) => titled(short(c), shown(unitOf(c)).unit)), t`error [× noise]`, t`found`]} />`;
+    <${Table} label="Studies" rows=${rows} numbers=${[5, ...columns]}
+      head=${[t`study`, t`state`, t`found`, t`model`, t`rows`, t`error [× noise]`, ...channels.map((c) => titled(short(c), shown(unitOf(c)).unit))]} />`;
 }

@@ -29,7 +29,7 @@ export function Errors({ study }) {
   const axis = axes.find((a) => a.key === key) ?? axes[0];
   return html`
     <p class="note">Root mean square errors in the unit of each channel. Held-out runs are never fitted.</p>
-    <${LedgerCharts} study=${study} lines=${lines} />
+    ${lines.length > 1 && html`<${LedgerCharts} study=${study} lines=${lines} />`}
     <${Ledger} study=${study} lines=${lines} />
     <h2>The models over the data</h2>
     <div class="actions" role="group" aria-label="Models that are shown">

@@ -6,8 +6,10 @@ import { varying } from "../chart/condition.js";
 import { Figure, fileName } from "../chart/figure.js";
 import { Plot, STYLE } from "../chart/library.js";
 import { ResidualChart } from "../chart/residual_chart.js";
+import { MANY } from "../chart/merged.js";
 import { byRun, pointable } from "../chart/runs.js";
 import { t } from "../language/language.js";
+import { Clauses } from "../part/clauses.js";
 import { Pending } from "../part/message.js";
 import { NoModel } from "../part/no_model.js";
 import { path } from "../rest/routes.js";
@@ -18,6 +20,8 @@ import { residualSds } from "../words/residual.js";
 
 /** Number of sds beyond which residuals have one colour. */
 const MOST_SDS = 4;
+/** Colours of a picture of many cells have so many steps in an sd. */
+const STEPS = 4;
 /** Names of runs stand under cells of this width [px] at least. */
 const LEAST_CELL = 14;
 /** Height of one character of a slanted name below the axis [px]. */
@@ -37,7 +41,7 @@ export function Failures({ study, model }) {
   const axis = axes.find((a) => a.key === order) ?? MADE;
   const findings = diagnostics?.findings ?? [];
   return html`
-    ${model.story && html`<p class="verdict">${capital(model.story.wrong.text)}.</p>`}
+    ${model.story && html`<div class="verdict"><${Clauses} text=${model.story.wrong.text} /></div>`}
     <div class="actions" role="group" aria-label="Ordered by">
       <span class="note">Ordered by</span>
       ${orders.map((o) => html`<button type="button" aria-pressed=${o.key === order} onClick=${() => setOrder(o.key)}>${o.title}</button>`)}
@@ -73,6 +77,11 @@ function HeatMap(/** @type {{ rows: any[], order: string, name: string }} */ { r
   const values = new Map(runs.map((run) => [run, value(run)]));
   runs.sort((a, b) => values.get(a) - values.get(b) || first.get(a).place - first.get(b).place);
   const hint = (/** @type {any} */ r) => [runName(r), short(r.channel)].join(", ") + `\n${conditionWords(r)}\n` + (r.sds > 0 ? t`${minus(r.sds.toFixed(1))} sds of all errors, ${minus(r.residual_sigma.toFixed(1))} of the noise alone: measured above computed` : t`${minus(r.sds.toFixed(1))} sds of all errors, ${minus(r.residual_sigma.toFixed(1))} of the noise alone: measured below computed`);
+  const isMany = judged.length > MANY;
+  const held = judged.filter((r) => r.use === "holdout");
+  const heldLook = { x: "run", y: "channel", fill: "var(--ink)", className: "held" };
+  // Of many cells, those of a step of the colours are one element.
+  const fill = isMany ? (/** @type {any} */ r) => Math.round(STEPS * Math.max(-MOST_SDS, Math.min(MOST_SDS, r.sds))) / STEPS : "sds";
   const isNamed = (/** @type {number} */ width) => (width - 112) / runs.length >= LEAST_CELL;
   const below = (/** @type {number} */ width) => (isNamed(width) ? 24 + CHARACTER * Math.max(...runs.map((run) => run.length)) : 26);
   const draw = (/** @type {number} */ width) => Plot.plot({
@@ -81,8 +90,8 @@ function HeatMap(/** @type {{ rows: any[], order: string, name: string }} */ { r
     y: { domain: CHANNELS.filter((c) => judged.some((r) => r.channel === c)), label: null, tickFormat: short, tickSize: 0 },
     color: { type: "linear", domain: [-MOST_SDS, 0, MOST_SDS], range: RESIDUAL_RANGE, clamp: true, interpolate: /** @type {any} */ (mix) },
     marks: [
-      Plot.cell(judged, byRun(judged, { x: "run", y: "channel", fill: "sds", inset: runs.length > 200 ? 0 : 0.5 })),
-      Plot.dot(judged.filter((r) => r.use === "holdout"), { x: "run", y: "channel", r: isNamed(width) ? 2 : 1, fill: "var(--ink)", className: "held" }),
+      Plot.cell(judged, byRun(judged, { x: "run", y: "channel", fill, inset: runs.length > 200 ? 0 : 0.5 }, isMany)),
+      Plot.dot(held, isMany ? byRun(held, { ...heldLook, r: 1 }, true) : { ...heldLook, r: isNamed(width) ? 2 : 1 }),
       Plot.tip(judged, Plot.pointer({ x: "run", y: "channel", title: hint, fill: "var(--panel)", stroke: "var(--rule)" })),
     ],
   });

@@ -6,6 +6,7 @@ import { LawChart } from "../chart/law_chart.js";
 import { InformationMap } from "../chart/information_map.js";
 import { t, translated } from "../language/language.js";
 import { ChannelCharts } from "../part/channel_charts.js";
+import { Clauses } from "../part/clauses.js";
 import { Explanations, OTHERS } from "../part/explanations.js";
 import { Failure, Pending } from "../part/message.js";
 import { NewRuns } from "../part/new_runs.js";
@@ -16,7 +17,6 @@ import { discover, extend, path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address, replace } from "../route.js";
 import { byChange, withGhost } from "../words/ghost.js";
-import { capital } from "../words/quantity.js";
 
 /** @param {{ study: any, model: any, query: Record<string, string>, reload?: () => void }} properties query.effect: whose curves are kept over the data */
 export function MissingEffect({ study, model, query, reload }) {
@@ -61,7 +61,7 @@ export function MissingEffect({ study, model, query, reload }) {
   const add = (/** @type {any} */ extension) => act(() => extend(model.id, extension));
   const layers = comparison ? withGhost(comparison.rows, record.curves, ghost) : [];
   return html`
-    <p class="verdict">${capital(record.text)}.</p>
+    <div class="verdict"><${Clauses} text=${record.text} /></div>
     <${Failure} error=${failure} />
     <div class="beside">
       <div>
@@ -69,7 +69,7 @@ export function MissingEffect({ study, model, query, reload }) {
       </div>
       <div class="ghosts">
         <p class="note" aria-live="polite">${ghost ? html`Dashed: what <b>${OTHERS[ghost] ?? ghost}</b> would predict for the fitted runs, from the search's fit. Nothing has been computed anew.` : t`Point at an explanation: its predictions appear over the data before anything is computed; a click on its name keeps them.`}</p>
-        ${comparison && html`<${ChannelCharts} small=${true} order=${byChange(comparison.rows, record.curves, ghost)} layers=${layers} axis=${varying(comparison.rows)[0]} name=${`${study.name}-ghost`} />`}
+        ${comparison && html`<${ChannelCharts} small=${true} isLow=${true} order=${byChange(comparison.rows, record.curves, ghost)} layers=${layers} axis=${varying(comparison.rows)[0]} name=${`${study.name}-ghost`} />`}
       </div>
     </div>
     ${record.outside && html`<${LawChart} law=${record.outside} name=${study.name} add=${isReport ? null : () => add({ effect_file: { name: "outside.toml", text: record.outside.effect_file } })} />`}

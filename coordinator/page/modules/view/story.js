@@ -5,14 +5,19 @@ import { html, useState } from "../html.js";
 import { LedgerCharts } from "../chart/ledger_chart.js";
 import { ledgerLines } from "../chart/ledger_lines.js";
 import { t } from "../language/language.js";
+import { Clauses } from "../part/clauses.js";
 import { Flags } from "../part/flags.js";
 import { Headline } from "../part/headline.js";
+import { Later } from "../part/later.js";
 import { Failure } from "../part/message.js";
-import { ModelTable } from "../part/model_table.js";
 import { isReport } from "../rest/answers.js";
 import { discover, extend } from "../rest/routes.js";
 import { address } from "../route.js";
-import { capital } from "../words/quantity.js";
+import { sentence } from "../words/clauses.js";
+
+// Tables that most stories have not.
+const modelTable = () => import("../part/model_table.js").then((module) => module.ModelTable);
+const ledger = () => import("../part/ledger.js").then((module) => module.Ledger);
 
 /** So many steps are shown at first. */
 const FIRST_STEPS = 3;
@@ -23,6 +28,7 @@ export function Story({ study, model, reload }) {
   const lines = ledgerLines(study);
   if (!story) {
     return html`${study.failure ? html`<${StudyFailure} study=${study} />`
+      : study.state === "paused" ? html`<p class="empty">The study is paused before its first calibration has finished. <a href=${address(["studies", study.id, "live"])}>Live</a> has the button that resumes it.</p>`
       : html`<p class="empty">Nothing is finished yet: the story begins with the first calibration. <a href=${address(["studies", study.id, "live"])}>Live</a> shows how far it is.</p>`}`;
   }
   // What it does next by itself is no advice.
@@ -30,22 +36,23 @@ export function Story({ study, model, reload }) {
   const to = (/** @type {string} */ view) => (isReport ? `#${view}` : address(["studies", study.id, view], { model: model.id }));
   return html`
     <${StudyFailure} study=${study} />
-    ${study.models && html`<p class=${`verdict ${study.models.none_of_these ? "doubt" : ""}`}>${sentence(signed(study.models.text))}</p>`}
+    ${study.models && html`<p class=${`verdict ${study.models.none_of_these ? "doubt" : ""}`}>${sentence(study.models.text)}</p>`}
     <${Headline} study=${study} model=${model} reload=${reload} />
     <div class="three">
       <section class="card"><h2>What the model gets wrong</h2>
-        <p class=${mood(story.wrong.channels)}>${sentence(story.wrong.text)}</p>
+        <div class=${mood(story.wrong.channels)}><${Clauses} text=${story.wrong.text} /></div>
         <p class="note"><a href=${to("failures")}>Where it fails</a></p></section>
       <section class="card"><h2>What is missing</h2>
-        <p>${sentence(story.missing.text)}</p>
+        <${Clauses} text=${story.missing.text} />
         <p class="note"><a href=${to("effects")}>All explanations</a></p></section>
       <section class="card"><h2>What to do next</h2>
         ${isAtWork && html`<p>The program is at work on this study: <a href=${to("live")}>Live</a> shows how far it is.</p>`}
         <${Steps} steps=${isAtWork ? [] : story.next.steps} study=${study} model=${model} reload=${reload} />
         ${isReport && story.next.steps.some((/** @type {any} */ step) => step.command) && html`<p class="note">Commands run in the folder of this report.</p>`}</section>
     </div>
-    ${study.models && html`<${ModelTable} comparison=${study.models} />`}
-    ${lines.length > 0 && html`<h2>How the error falls</h2><${LedgerCharts} study=${study} lines=${lines} />`}
+    ${study.models && html`<${Later} title=${t`The comparison of the models`} load=${modelTable} comparison=${study.models} />`}
+    ${lines.length > 1 && html`<h2>How the error falls</h2><${LedgerCharts} study=${study} lines=${lines} />`}
+    ${lines.length === 1 && !study.models && html`<h2>How large the error is</h2><${Later} title=${t`The error ledger`} load=${ledger} study=${study} lines=${lines} />`}
     <${Flags} study=${study} />`;
 }
 
@@ -63,11 +70,6 @@ function StudyFailure(/** @type {{ study: any }} */ { study }) {
     <p><b>What to do:</b> ${sentence(study.failure.advice)}</p>
     ${!isReport && html`<p><a class="button main" href=${address(["new"], { study: study.id })}>Edit and start again</a></p>`}</section>`;
 }
-
-const sentence = (/** @type {string} */ text) => capital(/[.!?]$/.test(text) ? text : `${text}.`);
-
-/** With the sign that people write before numbers. */
-const signed = (/** @type {string} */ text) => text.replace(/(?<=\s)-(?=\d)/g, "−");
 
 /** The first steps; the others are folded. */
 function Steps(/** @type {{ steps: any[], study: any, model: any, reload?: () => void }} */ { steps, ...given }) {

@@ -75,14 +75,17 @@ function verified(/** @type {any} */ { results, confirmed, workers }) {
 function Refused(/** @type {{ rejections: any }} */ { rejections }) {
   if (rejections.prior_draws === 0) return null;
   if (rejections.prior_refused === 0) return html`<p>The model accepted every draw from the prior (${rejections.prior_draws}).</p>`;
-  const cell = (/** @type {any} */ bin, /** @type {(value: number) => number} */ of) => {
+  // The outer bins end at the bounds of the prior, which may be as far out as the model allows.
+  const range = (/** @type {string} */ from, /** @type {string} */ to, /** @type {number} */ k, /** @type {number} */ count) =>
+    (k === 0 ? t`below ${to}` : k === count - 1 ? t`above ${from}` : `${from}${t` to `}${to}`);
+  const cell = (/** @type {any} */ bin, /** @type {number} */ k, /** @type {any[]} */ bins, /** @type {(value: number) => number} */ of) => {
     const end = (/** @type {number | null} */ v) => (v === null ? "" : digits(of(v), 3));
     const refused = /** @type {number[]} */ (Object.values(bin.refused)).reduce((a, b) => a + b, 0);
-    return html`<b>${refused}</b> of ${bin.draws}<br /><span class="note">${end(bin.from)} to ${end(bin.to)}</span>`;
+    return html`<b>${refused}</b> of ${bin.draws}<br /><span class="note">${range(end(bin.from), end(bin.to), k, bins.length)}</span>`;
   };
   return html`
     <h2>Where the model refuses parameters</h2>
     <p>It refused ${rejections.prior_refused} of ${rejections.prior_draws} draws from the prior${rejections.region ? t`, most of them in one region (${probability(rejections.region.p)} by chance)` : ""}.</p>
     <${Table} label="Rejections by region of the prior" head=${[t`parameter`, t`lowest fifth`, t`second`, t`middle`, t`fourth`, t`highest fifth`]}
-      rows=${rejections.parameters.map((/** @type {any} */ q) => [parameterTitle(q), ...q.bins.map((/** @type {any} */ bin) => cell(bin, shownParameter(q).of))])} />`;
+      rows=${rejections.parameters.map((/** @type {any} */ q) => [parameterTitle(q), ...q.bins.map((/** @type {any} */ bin, /** @type {number} */ k) => cell(bin, k, q.bins, shownParameter(q).of))])} />`;
 }

@@ -25,16 +25,21 @@ export function rimSpeed(/** @type {Condition} */ { slip, sled_speed_m_s }) {
 
 /**
  * Groups rows whose conditions are equal but for one, against which they are drawn. The colour of a group is its wheel load, or its slip
- * where runs are drawn against the load; its symbol tells the other conditions that were set to several levels.
+ * where runs are drawn against the load, or the condition with most levels where that one has a single level; its symbol tells the other
+ * conditions that were set to several levels.
  * @template {Condition} R
  * @param {R[]} rows
  * @param {string} against key of the condition that a group goes through
- * @returns {{ groups: Group<R>[], colours: string[], symbols: string[] }} groups in the order of their levels, with the names of these
+ * @returns {{ groups: Group<R>[], colours: string[], symbols: string[], colourKey: string, single: string | null }} groups in the order of
+ *   their levels, with the names of these; colourKey: the condition that colours tell; single: the one level of the usual one, if it has one
  */
 export function groups(rows, against = "slip") {
   const factors = { slip: slips(rows), wheel_load_n: loads(rows), sled_speed_m_s: speeds(rows), slip_angle_deg: angles(rows) };
-  const first = against === "wheel_load_n" ? factors.slip : factors.wheel_load_n;
-  const others = Object.entries(factors).filter(([key, factor]) => key !== against && factor !== first).map(([, factor]) => factor);
+  const usual = against === "wheel_load_n" ? "slip" : "wheel_load_n";
+  const free = Object.entries(factors).filter(([key]) => key !== against);
+  const widest = free.reduce((most, one) => (one[1].names.length > most[1].names.length ? one : most), [usual, factors[usual]]);
+  const [colourKey, first] = factors[usual].names.length > 1 ? [usual, factors[usual]] : widest;
+  const others = free.filter(([key]) => key !== colourKey).map(([, factor]) => factor);
   const symbols = others.reduce((/** @type {string[]} */ names, factor) =>
     names.flatMap((name) => factor.names.map((level) => [name, factor.names.length > 1 ? level : ""].filter(Boolean).join(", "))), [""]);
   /** @type {Map<string, Group<R>>} */
@@ -47,7 +52,7 @@ export function groups(rows, against = "slip") {
     found.set(`${colour} ${symbol}`, group);
   }
   const ordered = [...found.values()].sort((a, b) => a.colour - b.colour || a.symbol - b.symbol);
-  return { groups: ordered, colours: first.names, symbols };
+  return { groups: ordered, colours: first.names, symbols, colourKey, single: colourKey === usual ? null : factors[usual].names[0] ?? null };
 }
 
 /** @returns {Factor} */

@@ -2,7 +2,7 @@
 
 import { t } from "../language/language.js";
 import { meanAndSpread, shownParameter } from "./parameter.js";
-import { capital, channelName, errorWords, probability, shown, unitOf, words } from "./quantity.js";
+import { capital, channelName, digits, errorWords, probability, shown, unitOf, words } from "./quantity.js";
 
 /**
  * @typedef {{ channel: string, use: "fit" | "holdout", unit: string, before: number | null, now: number, noise: number | null }} ErrorChange
@@ -53,6 +53,9 @@ export function errorChanges(study, model) {
 /** `11.7 → 1.19 N`; a line does not break within it. */
 export const changeWords = (/** @type {ErrorChange} */ { before, now, unit }) => `${before === null ? "" : `${errorWords(before)} → `}${errorWords(now)} ${unit}`.replaceAll(" ", "\u00a0");
 
+/** `1.2 N`: the noise beside an error. */
+const noiseWords = (/** @type {ErrorChange} */ { noise, unit }) => `${digits(noise, 2)} ${unit}`.replaceAll(" ", "\u00a0");
+
 /**
  * The headline of a model.
  * @param {any} model with its story
@@ -62,6 +65,7 @@ export function headline({ story }, changes) {
   const { missing, wrong } = story;
   const [first] = changes;
   const error = first && t`${channelName(first.channel)} of ${USES[first.use]}: error ${changeWords(first)}`;
+  const beside = first && first.noise !== null ? t`, noise ${noiseWords(first)}` : "";
   const added = missing.already_added;
   const isCalm = wrong.channels.length > 0 && wrong.channels.every((/** @type {any} */ c) => c.is_within_noise);
   if (added.length > 0 && first?.before != null) return capital(added.length === 1 ? t`${error} with one more effect` : t`${error} with ${added.length} more effects`);
@@ -73,8 +77,9 @@ export function headline({ story }, changes) {
     undecided: () => t`whether something is missing is undecided`,
     nothing_detectable: () => (isCalm ? t`the model explains the runs to within the noise` : t`nothing is missing that these data can show`),
   }[/** @type {"named" | "class" | "not_in_library" | "undecided" | "nothing_detectable" | "none"} */ (missing.verdict ?? "none")];
+  if (!found && !isCalm && first) return capital(t`${channelName(first.channel)} of ${USES[first.use]} is off by ${changeWords(first)}${first.noise === null ? "" : t` (noise ${noiseWords(first)})`}; what is missing was not searched for`);
   const verdict = found ? found() : isCalm ? t`the model explains the runs to within the noise` : t`the model was not searched for a missing effect`;
-  return capital(error ? t`${verdict} (${error})` : verdict);
+  return capital(error ? t`${verdict} (${error}${beside})` : verdict);
 }
 
 /**

@@ -13,14 +13,17 @@ const UNITS = { drawbar_pull: "N", torque: "N m", sinkage: "m", lateral_force: "
 /** The channels in their order. */
 export const CHANNELS = /** @type {const} */ (["drawbar_pull", "torque", "sinkage", "lateral_force"]);
 
-/** Units in a text as people write them: `kg/m³`. */
-export const raised = (/** @type {string} */ text) => text.replace(/\^([23])/g, (_, power) => (power === "2" ? "²" : "³"));
+/** Units and numbers in a text of the service as people write them: `kg/m³`, `7·10⁻⁷`, `−0.5`, and to four digits where it has all. */
+export const raised = (/** @type {string} */ text) => text.replace(/\^([23])/g, (_, exponent) => (exponent === "2" ? "²" : "³"))
+  .replace(/(?<![\w.]|\w-)(\d+(?:\.\d+)?)e([+-]?\d+)(?!\w)/g, (_, factor, exponent) => `${factor === "1" ? "" : `${factor}·`}${power(Number(exponent))}`)
+  .replace(/(?<=^|[\s(])-(?=\d)/g, "−")
+  .replace(/\d+\.\d{9,}/g, (number) => String(Number(Number(number).toPrecision(4))));
 
 /** `drawbar_pull` as words. */
 export const words = (/** @type {string} */ name) => name.replaceAll("_", " ");
 
-/** A sentence begins with a capital, unless it begins with a name of the program. */
-export const capital = (/** @type {string} */ text) => (/^[a-z0-9]*_/.test(text) ? text : text.charAt(0).toUpperCase() + text.slice(1));
+/** A sentence begins with a capital, unless it begins with a name of the program or a symbol. */
+export const capital = (/** @type {string} */ text) => (/^([a-z0-9]*_|[a-z]\d?(,| and | is | lies ))/.test(text) ? text : text.charAt(0).toUpperCase() + text.slice(1));
 
 /** How names of parameters spell a unit at their end: `Pa/m` as `pa_m`, `1/m` as `per_m`, `kg/m^3` as `kg_m3`. */
 const spelt = (/** @type {string} */ unit) => unit.toLowerCase().replace(/^1\//, "per_").replaceAll("^", "").replace(/[^a-z0-9]+/g, "_");

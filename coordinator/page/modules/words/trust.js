@@ -65,7 +65,7 @@ function informed(/** @type {any} */ { parameters }) {
   const little = parameters.filter((/** @type {any} */ q) => q.contraction !== null && q.contraction < LITTLE).map(named);
   return little.length === 0
     ? { question, level: "good", text: t`each is known better than before` }
-    : { question, level: "fair", text: t`they tell little of ${list(little)}: its value is that of the prior` };
+    : { question, level: "fair", text: little.length === 1 ? t`they tell little of ${list(little)}: its value is that of the prior` : t`they tell little of ${list(little)}: their values are those of the priors` };
 }
 
 /** @returns {Judgement | null} */
