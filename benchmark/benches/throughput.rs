@@ -89,7 +89,7 @@ async fn main() -> Result<(), StudyError> {
     );
     let m = measure(&place, SWARM, 16, "1").await?;
     println!(
-        "{SWARM} workers at batch 16: {:.0} evaluations/s, p99 {:.0} ms, {:.1} us of the coordinator (at most {GOAL_SWARM_CPU_US}), {:.0} MB beside {:.0} of the jobs (at most {GOAL_SWARM_MB})",
+        "{SWARM} workers at batch 16: {:.0} evaluations/s, p99 {:.0} ms, {:.1} us of the coordinator (at most {GOAL_SWARM_CPU_US}), {:.0} MB for the workers (at most {GOAL_SWARM_MB}), {:.0} MB for the jobs",
         m.per_second,
         m.p99_ms,
         m.cpu_us,

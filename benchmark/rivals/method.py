@@ -7,7 +7,6 @@ prior, as a likelihood whose prior is uniform. Grouser is given a job: its model
 import atexit
 import http.server
 import json
-import os
 import pathlib
 import shutil
 import subprocess

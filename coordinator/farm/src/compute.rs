@@ -102,15 +102,15 @@ impl Compute {
     }
 }
 
-/// The niceness of the compute threads.
+/// How much higher the niceness of the compute threads is than that of the others.
 #[cfg(target_os = "linux")]
 const NICENESS: i32 = 10;
 
-/// Gives the threads that answer requests the first turn at a core: where there are fewer cores than threads, an answer would wait for the
-/// end of a step's turn. Only Linux gives a thread its own niceness.
+/// Lowers the priority of this thread, so that threads that answer requests run first where cores are few: an answer would wait for the end
+/// of a step's turn. Only Linux gives a thread its own niceness.
 fn lower_priority() {
     #[cfg(target_os = "linux")]
-    if let Err(error) = rustix::process::setpriority_process(None, NICENESS) {
+    if let Err(error) = rustix::process::nice(NICENESS) {
         tracing::debug!(%error, "a compute thread keeps its priority");
     }
 }

@@ -18,7 +18,7 @@ import { byRun, pointable } from "./runs.js";
 const CURVE = "monotone-x";
 /** The height of a low picture [px]. */
 const LOW = 150;
-/** Bands of more lines of several models hide each other. */
+/** The largest number of lines of several models that have bands; more bands would hide each other. */
 const MOST_BANDS = 8;
 /** More levels are not named in the legend. */
 const MOST_NAMES = 10;
@@ -28,7 +28,7 @@ const MOST_NAMES = 10;
  *   colour: of all its lines; null: each group of runs has its own.
  * @typedef {import("./surface_curves.js").SurfaceCurves} Moving
  * @param {{ channel: string, wheel: string | null, measurements: any[], layers: Layer[], axis: import("./condition.js").ConditionAxis, name: string, moving?: Moving, title?: string, isLow?: boolean }} properties
- *   layers: models, each with the rows of its comparison. measurements: each of them once. isLow: as low as it can be read.
+ *   layers: models, each with the rows of its comparison. measurements: each of them once. isLow: whether the picture has the smallest readable height.
  */
 export function ChannelChart({ channel, wheel, measurements, layers, axis, name, moving, title: stated, isLow = false }) {
   const own = (/** @type {any[]} */ rows) => rows.filter((r) => r.channel === channel && (wheel === null || r.wheel === wheel));
@@ -88,7 +88,7 @@ function picture({ width, layers, measured, found, axis, quantity, channel, movi
     const sign = isLayered ? { symbol: symbol(group.colour), ...look("var(--measured)") } : { symbol: symbol(group.symbol), ...look(colour(group.colour)) };
     return Plot.dot(own, byRun(own, { x, y: value("measured"), r: 4.2, ...sign }, isMany));
   });
-  // Edges would be drawn over the signs beside them where these are one element.
+  // No edges where many signs are one path: they would cover neighbouring signs.
   const edge = isMany ? {} : { stroke: "var(--paper)", strokeWidth: 0.7 };
   const predictions = layers.map((layer) => ({ name: layer.name, ofRun: new Map(layer.rows.map((r) => [r.run, r.predicted])) }));
   const tip = (/** @type {any} */ r) => [

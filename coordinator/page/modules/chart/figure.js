@@ -5,7 +5,7 @@ import { t } from "../language/language.js";
 import { light } from "../selection.js";
 import { words } from "../words/quantity.js";
 
-/** Who reads a page saves no file yet. */
+/** The module that saves files; it is loaded at the first download. */
 const files = () => import("./download.js");
 
 /** @typedef {Record<string, string | number | boolean | null | undefined>} Row */

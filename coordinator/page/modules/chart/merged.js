@@ -2,7 +2,7 @@
 
 /** A picture of more marks is drawn with merged ones. */
 export const MANY = 300;
-/** A pointer this far from the middle of a small mark means it [px]. */
+/** Smallest distance from the middle of a mark at which a pointer selects it [px]. */
 const LEAST_REACH = 6;
 const SVG = "http://www.w3.org/2000/svg";
 

@@ -56,7 +56,8 @@ export function pointable(plot, { runsIn, words } = {}) {
   };
   on("pointerover", over);
   on("pointermove", over);
-  on("pointerleave", () => {
+  on("pointerleave", (event) => {
+    if (event.target !== plot) return;
     if (under) point(null);
     under = undefined;
   });

@@ -119,6 +119,7 @@ export const SENTENCES = {
     "Die Kalibrierung hat zu wenige Ziehungen mit Ausgaben für eine Antwortfläche.",
   "The first stage draws from the prior; pictures come with its end.":
     "Die erste Stufe zieht aus dem Prior; Bilder kommen an ihrem Ende.",
+  "the end cannot be estimated yet": "das Ende lässt sich noch nicht abschätzen",
   "the fitted runs are within the noise; hold some out to know":
     "die angepassten Fahrten liegen im Rauschen; halten Sie einige zurück, um es zu wissen",
   "The ledger has a line for each finished calibration with a posterior; none is finished yet.":
@@ -146,7 +147,6 @@ export const SENTENCES = {
   "they tell little of {0}: their values are those of the priors": "sie sagen wenig über {0}: ihre Werte sind die der Priors",
   "The study is paused before its first calibration has finished.": "Die Studie ist angehalten, bevor ihre erste Kalibrierung fertig wurde.",
   "has the button that resumes it.": "hat den Knopf, der sie fortsetzt.",
-  "almost done: how long the last steps take is not known before": "fast fertig: wie lange die letzten Schritte dauern, ist vorher nicht bekannt",
   "too weak to be seen with these data at usual strength": "in üblicher Stärke zu schwach, um in diesen Daten sichtbar zu sein",
   "trend: {0} {1} from one end to the other, before the fit compensates":
     "Trend: {0} {1} von einem Ende zum anderen, bevor die Anpassung ausgleicht",

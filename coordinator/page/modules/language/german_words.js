@@ -122,8 +122,6 @@ export const WORDS = {
   "contraction": "Verengung",
   "Control of the calibration": "Steuerung der Kalibrierung",
   "current, corrected": "aktuell, korrigiert",
-  "In 90 % interval: the noise was inferred as wide as the error, so that this share says nothing for the model.":
-    "Im 90-%-Intervall: Das Rauschen wurde so breit wie der Fehler geschlossen, daher spricht dieser Anteil nicht für das Modell.",
   "dashed outline: prior": "gestrichelt: Prior",
   "Dashed: what": "Gestrichelt: was",
   "Data": "Daten",
@@ -210,6 +208,8 @@ export const WORDS = {
   "The error ledger": "Das Fehlerbuch",
   "How large the error is": "Wie groß der Fehler ist",
   "How the error falls": "Wie der Fehler fällt",
+  "In 90 % interval: the intervals are as wide as the error, so this share does not support the model.":
+    "Im 90-%-Intervall: Die Intervalle sind so breit wie der Fehler, daher spricht dieser Anteil nicht für das Modell.",
   "in 90 % interval": "im 90-%-Intervall",
   "in every channel (chi-square)": "in jedem Kanal (Chi-Quadrat)",
   "incomplete": "unvollständig",

@@ -36,17 +36,17 @@ function SetLedger(/** @type {{ study: any, lines: import("../words/ledger.js").
   for (const [name, of] of beside(study, lines)) {
     if (of?.holdout) rows.push(row(name, "holdout", of.holdout, of.coverage90?.holdout));
   }
-  const isByNoise = lines.some(({ line }) => /** @type {const} */ (["fit", "holdout"]).some((use) => isInsideByNoise(line.error[use], line.coverage90?.[use])));
+  const isByWidth = lines.some(({ line }) => /** @type {const} */ (["fit", "holdout"]).some((use) => isInsideByWidth(line.error[use], line.coverage90?.[use])));
   return html`<${Table} label=${label} head=${head} rows=${rows} numbers=${head.map((_, k) => k).filter((k) => k > 1)} />
-    ${isByNoise && html`<p class="note">${t`In 90 % interval: the noise was inferred as wide as the error, so that this share says nothing for the model.`}</p>`}`;
+    ${isByWidth && html`<p class="note">${t`In 90 % interval: the intervals are as wide as the error, so this share does not support the model.`}</p>`}`;
 }
 
 /** The errors in noise standard deviations above which intervals of that noise would hold few of the measurements. */
 const LARGE = 3;
 
-/** Whether the intervals hold nine of ten measurements although the errors are large: their noise was inferred as wide as the errors. */
-function isInsideByNoise(/** @type {any} */ error, /** @type {number | null | undefined} */ inside) {
-  return Boolean(error) && (inside ?? 0) >= 0.9 && (error.all.rmse_fixed_sigma ?? 0) > LARGE;
+/** Whether the intervals hold every measurement although the errors are large: they are much wider than the noise. */
+function isInsideByWidth(/** @type {any} */ error, /** @type {number | null | undefined} */ inside) {
+  return Boolean(error) && inside === 1 && (error.all.rmse_fixed_sigma ?? 0) > LARGE;
 }
 
 /** What predicts held-out runs beside the models as they are, among the lines with the current model. */

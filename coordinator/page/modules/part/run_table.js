@@ -1,12 +1,12 @@
 // The table of runs: measured, computed, interval, residual.
 
-import { html, useState } from "../html.js";
+import { html, useEffect, useState } from "../html.js";
 import { t } from "../language/language.js";
 import { slipWords } from "../words/condition.js";
 import { digits, minus, shown, short, titled } from "../words/quantity.js";
-import { point, toggle } from "../selection.js";
+import { light, point, toggle } from "../selection.js";
 
-/** So many rows are shown at once: more cells are slow to make. */
+/** Number of rows on a page of the table; more cells take long to create. */
 const PAGE_ROWS = 120;
 
 /** @param {{ rows: any[] }} properties rows of a comparison */
@@ -14,6 +14,8 @@ export function RunTable({ rows }) {
   const [first, setFirst] = useState(0);
   const last = Math.min(first + PAGE_ROWS, rows.length);
   const go = (/** @type {number} */ to) => () => setFirst(to);
+  // The rows of a new page are marked where their runs are chosen.
+  useEffect(() => light(document), [first]);
   return html`
     ${rows.length > PAGE_ROWS && html`<div class="actions" role="group" aria-label="Rows of the table">
       <button type="button" disabled=${first === 0} onClick=${go(first - PAGE_ROWS)}>Rows before</button>

@@ -20,7 +20,7 @@ import { residualSds } from "../words/residual.js";
 
 /** Number of sds beyond which residuals have one colour. */
 const MOST_SDS = 4;
-/** Colours of a picture of many cells have so many steps in an sd. */
+/** Number of colour steps per sd in a picture of many cells. */
 const STEPS = 4;
 /** Names of runs stand under cells of this width [px] at least. */
 const LEAST_CELL = 14;

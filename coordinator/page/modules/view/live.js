@@ -21,7 +21,7 @@ import { progressWords } from "../words/state.js";
 
 /** How often the workers are asked for [ms]. */
 const FARM_MS = 2000;
-/** The service states no greater share of what is not over. */
+/** The largest share that the service states before the end. */
 const MOST_SHARE = 0.99;
 const FINAL = ["finished", "failed", "cancelled"];
 const KINDS = { sample: t`calibration`, fit: t`fit`, search: t`search for a missing effect` };
@@ -87,8 +87,8 @@ function Member(/** @type {{ member: any, reload: () => void }} */ { member, rel
     <h2>${member.name}</h2>
     <p aria-live="polite"><span class=${`state ${state}`}>${translated(state)}</span>${progress ? `: ${progressWords(progress)}` : ""}
       ${progress && html` <span class="note">${Math.round(progress.evaluations_per_s)} evaluations/s; ${progress.rejected} rejected by the model</span>`}</p>
-    ${share !== null && html`<p class="whole-share"><label>Whole <progress max="1" value=${share}></progress> ${share < MOST_SHARE ? t`about ${Math.round(100 * share)} %` : t`almost done: how long the last steps take is not known before`}</label>
-      ${progress.remaining_s === null && seen.current && html` <span class="note">${toGo(share, seen.current, Date.now())}</span>`}</p>`}
+    ${share !== null && html`<p class="whole-share"><label>Whole <progress max="1" value=${share}></progress> ${share < MOST_SHARE ? t`about ${Math.round(100 * share)} %` : t`the end cannot be estimated yet`}</label>
+      ${share < MOST_SHARE && progress.remaining_s === null && seen.current && html` <span class="note">${toGo(share, seen.current, Date.now())}</span>`}</p>`}
     ${progress && html`<p><label>Present step <progress max=${Math.max(1, progress.step_size)} value=${progress.step_done}></progress> ${percentage(progress.step_done, progress.step_size)}${" "}
       <span class="note">(${progress.step_done} of ${progress.step_size} evaluations)</span></label></p>`}
     <${Failure} error=${failure} />

@@ -10,12 +10,13 @@ import { Flags } from "../part/flags.js";
 import { Headline } from "../part/headline.js";
 import { Later } from "../part/later.js";
 import { Failure } from "../part/message.js";
+import { NoModel } from "../part/no_model.js";
 import { isReport } from "../rest/answers.js";
 import { discover, extend } from "../rest/routes.js";
 import { address } from "../route.js";
 import { sentence } from "../words/clauses.js";
 
-// Tables that most stories have not.
+// Tables that most stories do not show are loaded when needed.
 const modelTable = () => import("../part/model_table.js").then((module) => module.ModelTable);
 const ledger = () => import("../part/ledger.js").then((module) => module.Ledger);
 
@@ -28,7 +29,7 @@ export function Story({ study, model, reload }) {
   const lines = ledgerLines(study);
   if (!story) {
     return html`${study.failure ? html`<${StudyFailure} study=${study} />`
-      : study.state === "paused" ? html`<p class="empty">The study is paused before its first calibration has finished. <a href=${address(["studies", study.id, "live"])}>Live</a> has the button that resumes it.</p>`
+      : ["paused", "cancelled"].includes(study.state) ? html`<${NoModel} study=${study} />`
       : html`<p class="empty">Nothing is finished yet: the story begins with the first calibration. <a href=${address(["studies", study.id, "live"])}>Live</a> shows how far it is.</p>`}`;
   }
   // What it does next by itself is no advice.

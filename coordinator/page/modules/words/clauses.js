@@ -9,12 +9,12 @@ export const sentence = (/** @type {string} */ text) => capital(raised(/[.!?]$/.
 export function clauses(/** @type {string} */ text) {
   let depth = 0;
   /** @type {string[]} */
-  const found = [""];
+  const parts = [""];
   for (const part of text.split(/([()[\]]|; )/)) {
     if ("([".includes(part) && part !== "") depth += 1;
-    if (")]".includes(part) && part !== "") depth -= 1;
-    if (part === "; " && depth === 0) found.push("");
-    else found[found.length - 1] += part;
+    if (")]".includes(part) && part !== "") depth = Math.max(0, depth - 1);
+    if (part === "; " && depth === 0) parts.push("");
+    else parts[parts.length - 1] += part;
   }
-  return found;
+  return parts;
 }

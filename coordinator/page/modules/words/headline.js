@@ -77,7 +77,7 @@ export function headline({ story }, changes) {
     undecided: () => t`whether something is missing is undecided`,
     nothing_detectable: () => (isCalm ? t`the model explains the runs to within the noise` : t`nothing is missing that these data can show`),
   }[/** @type {"named" | "class" | "not_in_library" | "undecided" | "nothing_detectable" | "none"} */ (missing.verdict ?? "none")];
-  if (!found && !isCalm && first) return capital(t`${channelName(first.channel)} of ${USES[first.use]} is off by ${changeWords(first)}${first.noise === null ? "" : t` (noise ${noiseWords(first)})`}; what is missing was not searched for`);
+  if (!found && !isCalm && first) return capital(t`${channelName(first.channel)} of ${USES[first.use]} is off by ${changeWords({ ...first, before: null })}${first.noise === null ? "" : t` (noise ${noiseWords(first)})`}; what is missing was not searched for`);
   const verdict = found ? found() : isCalm ? t`the model explains the runs to within the noise` : t`the model was not searched for a missing effect`;
   return capital(error ? t`${verdict} (${error}${beside})` : verdict);
 }

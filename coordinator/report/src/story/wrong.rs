@@ -6,6 +6,7 @@ use shared::experiment::RunUse;
 
 use super::pattern;
 use crate::diagnosis::diagnostics;
+use crate::flag::cause::pattern_of;
 use crate::flag::interpolation::{BY_CHANCE, MIN_RUNS, RATIO};
 use result::diagnostics::trends::TrendDiagnostics;
 use result::finished_calibration::FinishedCalibration;
@@ -104,7 +105,9 @@ impl<'a> Judge<'a> {
         });
         // A noise that was inferred from the misfit contains the model's error, so it can neither explain nor show a failure.
         let is_known = sigma.is_none_or(|sigma| sigma.source != SigmaSource::Inferred);
-        let is_noise = is_known && by_noise.is_some_and(|p| p >= BY_CHANCE);
+        // Errors as small as the noise that follow a condition are not noise alone.
+        let has_trend = pattern_of(&self.trends, channel).is_some();
+        let is_noise = is_known && !has_trend && by_noise.is_some_and(|p| p >= BY_CHANCE);
         let beside_interpolation = self.beside_interpolation(channel, error.runs);
         let is_beaten = !is_noise
             && beside_interpolation.is_some_and(|both| {
@@ -280,6 +283,7 @@ mod tests {
 
     use super::*;
     use crate::fixture;
+    use result::diagnostics::trends::TrendVariable;
 
     fn wrong(calibration: FinishedCalibration) -> Wrong {
         let study = Study::from(calibration);
@@ -368,6 +372,28 @@ mod tests {
             "{}",
             wrong.text
         );
+    }
+
+    #[test]
+    fn an_error_as_small_as_the_noise_that_follows_a_condition_is_not_noise_alone() {
+        let calibration = fixture::with_held_out_runs(6, 0.1);
+        let study = Study::from(calibration);
+        let rows = &study.lead.comparison().rows;
+        let mut judge = Judge::new(&study, &study.lead, rows);
+        assert!(judge.failure(Channel::DrawbarPull).unwrap().is_within_noise);
+        judge.trends = vec![TrendDiagnostics {
+            channel: Channel::DrawbarPull,
+            against: TrendVariable::Slip,
+            unit: "N".into(),
+            change: 0.3,
+            change_sd: 0.05,
+            share_left: 0.9,
+            p: 1e-9,
+        }];
+        let pull = judge.failure(Channel::DrawbarPull).unwrap();
+        assert!(!pull.is_within_noise, "{pull:?}");
+        let place = "over-predicted at low slip and under-predicted at high slip";
+        assert_eq!(pull.place.as_deref(), Some(place));
     }
 
     #[test]

@@ -126,10 +126,10 @@ fn table(study: &Study, lines: &[LedgerLine], predictions: &[(&str, Option<&Erro
         let _ = writeln!(text, "*: worse than in the model above");
     }
     let mut rows = lines.iter().flat_map(|line| &line.rows);
-    if rows.any(LedgerRow::is_inside_by_noise) {
+    if rows.any(LedgerRow::is_inside_by_width) {
         let _ = writeln!(
             text,
-            "inside: the noise was inferred as wide as the error, so this says nothing"
+            "inside: the intervals are as wide as the error, so this supports no model"
         );
     }
     text
