@@ -40,7 +40,7 @@ pub struct LedgerRow {
 const LARGE: f64 = 3.0;
 
 impl LedgerRow {
-    /// Returns whether the intervals hold every measurement although the errors are larger than [`LARGE`]. The intervals are then much wider
+    /// Returns whether the intervals hold every measurement although the errors are larger than 3 sds of the noise. The intervals are then much wider
     /// than the noise, as with an inferred discrepancy, and the count does not support the model.
     pub fn is_inside_by_width(&self) -> bool {
         let holds = self.coverage.is_some_and(|held| held.inside == held.total);
