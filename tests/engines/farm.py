@@ -160,4 +160,3 @@ def from_nothing(engine, service, folder, job, expected):
         until("an empty queue", lambda: not engine.present())
     print(f"{engine.name}: first evaluation {whole_s:.1f} s after the job came and {first_s:.2f} s after a pilot ran, "
           f"posterior in {took_s:.0f} s, then no pilot; the bits of a local run")
-    assert first_s <= 3.0, f"{first_s:.2f} s from the start of a pilot to the first evaluation"

@@ -104,7 +104,7 @@ impl Compute {
 
 /// How much higher the niceness of the compute threads is than that of the others.
 #[cfg(target_os = "linux")]
-const NICENESS: i32 = 10;
+const NICENESS: i32 = 5;
 
 /// Lowers the priority of this thread, so that threads that answer requests run first where cores are few: an answer would wait for the end
 /// of a step's turn. Only Linux gives a thread its own niceness.
