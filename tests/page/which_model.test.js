@@ -26,8 +26,9 @@ for (const [theme, width] of [["light", 1280], ["dark", 400]]) {
     try {
       await page.goto(url);
       await page.locator("section#trust").waitFor();
-      assert.match(await page.locator(".verdict").first().textContent(), /wong_reece is the most probable of 3 models/);
       const rows = page.getByRole("region", { name: "Which model" }).locator("tbody tr");
+      await rows.first().waitFor();
+      assert.match(await page.locator(".verdict").first().textContent(), /wong_reece is the most probable of 3 models/);
       assert.deepEqual(await rows.locator("th").allTextContents(), ["wong_reece", "quasi_static", "rft"]);
       assert.match(await rows.first().textContent(), /47\.\d+ ± 0\.\d+> 0\.999.*chosen; predicts best/);
       assert.match(await page.locator("header .note").first().textContent(), /^wong_reece; compared: quasi_static, wong_reece, rft$/);
