@@ -21,7 +21,7 @@ after(async () => {
   await service?.stop();
 });
 
-// So many particles that the calibration is still running when its first figure is drawn.
+// The job has so many particles that the calibration is still running when its first figure is drawn.
 const ask = (job) => job.replace('apply = "auto"', 'apply = "ask"').replace("seed = 1", "seed = 1\nparticles = 4000");
 
 test("dropped files and chosen files are the same draft", async () => {
@@ -121,7 +121,7 @@ test("the story begins with the error before and after, and the picture of both 
   assert.match(await found.locator("h2").textContent(), / of held-out runs: error [\d.]+\u00a0→\u00a0[\d.]+\u00a0N.* with one more effect\.$/);
   assert.match(await found.textContent(), /shear stress needs displacement along the rim to build up, shear modulus 9\.\d+ ± 0\.\d+ mm/);
   await found.locator(".model path").first().waitFor({ state: "attached" });
-  // What was wrong, what was missing, how sure that is and what it bought: on a screen of 800 lines, with the picture.
+  // A screen of 800 lines shows what was wrong, what was missing, how sure that is and what it bought, with the picture.
   for (const part of ["h2", "b", ".errors", ".bars", ".plot svg"]) {
     const { y, height } = await found.locator(part).first().boundingBox();
     assert.ok(y + height <= 800, `${part} ends at ${y + height} px`);

@@ -38,7 +38,7 @@ test("the headline of a searched model names what is missing in plain words, or 
   assert.equal(said({ verdict: "class", named: [JANOSI, JANOSI] }), `One of 2 effects is missing, and the data do not tell which${error}`);
   assert.equal(said({ verdict: "undecided" }), `Whether something is missing is undecided${error}`);
   assert.equal(said({ verdict: "nothing_detectable" }, true), `The model explains the runs to within the noise${error}`);
-  // What is wrong comes first where nobody has searched.
+  // Without a search, the headline begins with what the model gets wrong.
   assert.equal(said({}), "Drawbar pull of held-out runs is off by 11.7\u00a0N (noise 1.2\u00a0N); what is missing was not searched for");
 });
 
@@ -56,7 +56,7 @@ test("the picture has the load at which the models differ most", () => {
   const rows = (/** @type {number} */ ofHeavy) => [60, 120].flatMap((load) => [0.1, 0.3, 0.5].map((slip) => row(load, slip, load === 120 ? ofHeavy : 9)));
   const found = clearest(rows(10), rows(4));
   assert.deepEqual([found.at, found.runs.size, found.wheel], ["at a wheel load of 120 N", 3, null]);
-  // Of one load, the slip angle.
+  // Where all runs have one wheel load, the picture shows one slip angle.
   const angles = (/** @type {number} */ ofSkew) => [0, 45].flatMap((angle) => [0.1, 0.3, 0.5].map((slip) => ({ ...row(60, slip, angle === 45 ? ofSkew : 9), run: `${angle} ${slip}`, slip_angle_deg: angle })));
   assert.equal(clearest(angles(10), angles(4)).at, "at a slip angle of 45°");
   // Two slips are no curve: all runs are drawn.

@@ -44,7 +44,7 @@ export function moved(/** @type {string} */ d, /** @type {number} */ left, /** @
   return last.parts.map(({ head, x, y }) => (Number.isNaN(x) ? head : `${head}${x + left},${y + top}`)).join("");
 }
 
-/** The commands of a symbol: each with what stands before its end, and its end; NaN where the end is relative. */
+/** The commands of a symbol: of each the text before its end point, and the end point; NaN where that is relative. */
 function partsOf(/** @type {string} */ d) {
   return [...d.matchAll(/([MLHVCSQTAZ])([^MLHVCSQTAZ]*)/gi)].map(([text, command, values]) => {
     const numbers = numbersOf(values);

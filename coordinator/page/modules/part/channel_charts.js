@@ -4,7 +4,7 @@ import { html, useMemo } from "../html.js";
 import { ChannelChart } from "../chart/channel_chart.js";
 import { CHANNELS } from "../words/quantity.js";
 
-/** More low pictures stand beside each other, so that all are seen at once. */
+/** Low pictures are narrow, too, so that all of them stand beside each other. */
 const MOST_ROWS = 3;
 
 /** @param {{ layers: import("../chart/channel_chart.js").Layer[], axis: import("../chart/condition.js").ConditionAxis, name: string, moving?: import("../chart/channel_chart.js").Moving, small?: boolean, isLow?: boolean, order?: readonly string[] }} properties isLow: each as low as it can be read. order: of the channels */

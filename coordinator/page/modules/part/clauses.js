@@ -3,7 +3,7 @@
 import { html } from "../html.js";
 import { clauses, sentence } from "../words/clauses.js";
 
-/** So many are shown at first. */
+/** Number of clauses that are shown at first. */
 const FIRST = 3;
 
 /** @param {{ text: string }} properties */

@@ -10,7 +10,7 @@ import { Table } from "./table.js";
 
 const USES = ["fit", "holdout"];
 
-/** An error on fitted rows, above that on held-out rows; nothing of a channel that the study has not. */
+/** An error on fitted rows, above that on held-out rows; nothing for a channel without errors. */
 function pair(/** @type {any} */ error, /** @type {(use: any) => number | null | undefined} */ of, scale = 1) {
   const uses = USES.filter((use) => error?.[use]);
   const values = uses.map((use) => of(error[use]) ?? null);
@@ -30,7 +30,7 @@ function foundBy(/** @type {any} */ study) {
   return found && html`<div class="found">${capital(found)}${study.verdict?.open && html`<div class="note">${study.verdict.open}</div>`}</div>`;
 }
 
-/** The day of the submission; pointed at, with the time as the reader's country writes it. */
+/** The day of the submission; its title has the time in the reader's format. */
 function Day(/** @type {{ ms: number | null }} */ { ms }) {
   if (ms === null) return null;
   const day = new Date(ms).toISOString().slice(0, 10);

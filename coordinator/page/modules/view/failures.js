@@ -80,7 +80,7 @@ function HeatMap(/** @type {{ rows: any[], order: string, name: string }} */ { r
   const isMany = judged.length > MANY;
   const held = judged.filter((r) => r.use === "holdout");
   const heldLook = { x: "run", y: "channel", fill: "var(--ink)", className: "held" };
-  // Of many cells, those of a step of the colours are one element.
+  // In a picture of many cells, all cells of one colour step are one element.
   const fill = isMany ? (/** @type {any} */ r) => Math.round(STEPS * Math.max(-MOST_SDS, Math.min(MOST_SDS, r.sds))) / STEPS : "sds";
   const isNamed = (/** @type {number} */ width) => (width - 112) / runs.length >= LEAST_CELL;
   const below = (/** @type {number} */ width) => (isNamed(width) ? 24 + CHARACTER * Math.max(...runs.map((run) => run.length)) : 26);
