@@ -73,6 +73,13 @@ pub enum Fact {
         /// Wall time spent on the calibration so far `[ms]`.
         busy_ms: u64,
     },
+    /// A calibration that is over needs no predicted values of its evaluations any more. This fact follows that of the state.
+    ValuesExpired {
+        /// Id of the calibration.
+        calibration: i64,
+        /// The first of these evaluations.
+        from: u64,
+    },
     /// A second worker has reproduced a stored result.
     Confirmed {
         /// Id of the calibration.

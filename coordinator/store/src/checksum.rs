@@ -91,6 +91,11 @@ impl CheckedTable {
         names.chain(["checksum"]).collect()
     }
 
+    /// Returns the columns that the checksum covers.
+    pub(super) fn columns(&self) -> impl Iterator<Item = &'static (&'static str, Kind)> {
+        self.columns.iter()
+    }
+
     /// Adds the checksum to the values of a row, in the order of the columns.
     pub(super) fn sealed(&self, mut row: Vec<Value>) -> Vec<Value> {
         debug_assert_eq!(row.len(), self.columns.len());

@@ -29,6 +29,8 @@ pub(super) async fn write(
     let raises_doubts = matches!(fact, Fact::Quarantined { .. } | Fact::Rewound { .. });
     let written = match fact {
         Fact::Evaluated { .. } => unreachable!("evaluations go in groups"),
+        // The writer drops them in later commits.
+        Fact::ValuesExpired { .. } => Ok(()),
         Fact::Duplicate {
             calibration,
             evaluation,

@@ -12,6 +12,7 @@ mod damage;
 mod details;
 mod effects;
 mod error;
+mod expired_values;
 mod facts;
 mod file;
 #[cfg(test)]

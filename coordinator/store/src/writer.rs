@@ -3,6 +3,7 @@
 //! Facts are numbered in the order of their arrival. An answer that depends on a fact is held back until the fact is committed, so that
 //! acknowledged results are durable.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
@@ -13,6 +14,7 @@ use tokio::sync::{Notify, broadcast, mpsc, oneshot, watch};
 use super::change::{Listeners, StateChange};
 use super::effects::{AddedEffect, NewEffect, insert_effect};
 use super::error::{StoreError, is_locked};
+use super::expired_values::ExpiredValues;
 use super::health::StoreHealth;
 use super::insert::{
     NewCalibrationRow, NewStudy, StudyIds, insert_calibration, insert_evaluations, insert_experiment,
@@ -354,18 +356,30 @@ async fn run(
     let mut group = Vec::with_capacity(GROUP);
     let mut number = 0;
     let mut closing = false;
-    while !closing && next_writes(&mut connection, &mut receiver, &mut group).await? > 0 {
-        waiting.linger().await;
+    let mut expired = VecDeque::new();
+    loop {
+        if expired.is_empty() {
+            if closing || next_writes(&mut connection, &mut receiver, &mut group).await? == 0 {
+                break;
+            }
+            waiting.linger().await;
+        }
         while group.len() < GROUP
             && let Ok(write) = receiver.try_recv()
         {
             group.push(write);
         }
-        closing = group.iter().any(|w| matches!(w, Write::Close));
+        closing |= group.iter().any(|w| matches!(w, Write::Close));
         let began = std::time::Instant::now();
         let mut replies = Replies::default();
         let is_file = matches!(connection, Connection::Sqlite(_));
-        let stored = store_group(&mut connection, group.drain(..), &mut replies, health);
+        let stored = store_group(
+            &mut connection,
+            group.drain(..),
+            &mut expired,
+            &mut replies,
+            health,
+        );
         let facts = if is_file {
             stored.await?
         } else {
@@ -405,10 +419,11 @@ async fn next_writes(
     }
 }
 
-/// Stores writes in one transaction. Returns how many of them are facts.
+/// Stores writes in one transaction, and drops a part of the values that expired before. Returns how many of the writes are facts.
 async fn store_group(
     connection: &mut Connection,
     group: impl Iterator<Item = Write>,
+    expired: &mut VecDeque<ExpiredValues>,
     replies: &mut Replies,
     health: &StoreHealth,
 ) -> Result<u64, sqlx::Error> {
@@ -422,11 +437,17 @@ async fn store_group(
     }
     health.is_locked.store(false, Ordering::Relaxed);
     let facts = write_group(connection, group, replies, health).await?;
+    if let Some(values) = expired.front_mut()
+        && values.drop_part(connection).await?
+    {
+        expired.pop_front();
+    }
     connection.commit().await?;
+    expired.extend(replies.expired.drain(..));
     Ok(facts)
 }
 
-/// Replies that are sent after the commit.
+/// What follows from a commit: replies, and values that may be dropped.
 #[derive(Default)]
 struct Replies {
     ids: Vec<(oneshot::Sender<i64>, i64)>,
@@ -434,6 +455,7 @@ struct Replies {
     effects: Vec<(oneshot::Sender<AddedEffect>, AddedEffect)>,
     done: Vec<oneshot::Sender<()>>,
     deleted: Vec<(oneshot::Sender<bool>, bool)>,
+    expired: Vec<ExpiredValues>,
     states: Vec<StateChange>,
     /// Whether studies, their members or the doubts about workers have changed.
     have_studies_changed: bool,
@@ -479,6 +501,7 @@ async fn write_group(
                     other => {
                         insert_evaluations(connection, &mut rows).await?;
                         replies.states.extend(StateChange::from_fact(&other));
+                        replies.expired.extend(ExpiredValues::from_fact(&other));
                         replies.have_studies_changed |=
                             super::facts::write(connection, other, health).await?;
                     }

@@ -228,7 +228,26 @@ impl Calibration {
     pub fn finish_if_compared(&mut self, facts: &mut Vec<Fact>) {
         if self.is_concluded() && self.witness.second.waiting() == 0 {
             self.finish(CalibrationState::Finished, None, facts);
+            self.expire_values(facts);
         }
+    }
+
+    /// Says which predicted values were kept for a replay alone. Diagnostics compare those of draws from the prior with the posterior.
+    fn expire_values(&self, facts: &mut Vec<Fact>) {
+        let algorithm = &self.spec.algorithm;
+        if !algorithm.is_told_values() {
+            return;
+        }
+        let from = match algorithm {
+            AlgorithmSettings::Sample(_) => algorithm.width() as u64,
+            AlgorithmSettings::Fit(_) | AlgorithmSettings::Evolve(_) | AlgorithmSettings::Discover { .. } => {
+                0
+            }
+        };
+        facts.push(Fact::ValuesExpired {
+            calibration: self.identity.id,
+            from,
+        });
     }
 
     pub(super) fn finish(&mut self, state: CalibrationState, message: Option<String>, facts: &mut Vec<Fact>) {

@@ -1,9 +1,5 @@
 //! The pattern of a channel's errors in words: the conditions at which they are largest.
 
-use shared::channel::Channel;
-
-use crate::flag::cause::pattern_of;
-use result::diagnostics::trends::TrendDiagnostics;
 use result::table::level::few_levels;
 use result::table::row::ComparisonRow;
 use result::words::number;
@@ -22,20 +18,14 @@ const CONDITIONS: [Condition; 4] = [
     ("a slip angle of", 1.0, " deg", |row| row.slip_angle_deg),
 ];
 
-/// Describes where the errors lie: the significant trend of the fitted residuals, else the common sign in all runs, else the level with
-/// the largest error.
-pub(super) fn place(
-    channel: Channel,
-    rows: &[&ComparisonRow],
-    trends: &[TrendDiagnostics],
-) -> Option<String> {
+/// Describes where the errors of a channel without a significant trend lie: the common sign in all runs, else the level with the largest
+/// error.
+pub(super) fn place(rows: &[&ComparisonRow]) -> Option<String> {
     let residuals = rows
         .iter()
         .filter_map(|row| Some((*row, row.measured - row.predicted?)));
     let residuals: Vec<(&ComparisonRow, f64)> = residuals.collect();
-    pattern_of(trends, channel)
-        .or_else(|| one_direction(&residuals))
-        .or_else(|| standing_out(&residuals))
+    one_direction(&residuals).or_else(|| standing_out(&residuals))
 }
 
 fn one_direction(residuals: &[(&ComparisonRow, f64)]) -> Option<String> {
@@ -48,31 +38,64 @@ fn one_direction(residuals: &[(&ComparisonRow, f64)]) -> Option<String> {
     (residuals.len() > 1).then(|| format!("{direction}-predicted in every run"))
 }
 
+/// Names the worst level of the condition that tells best where the errors are large: an angle of 90 degrees, and not the low load that a
+/// ploughing wheel has there.
 fn standing_out(residuals: &[(&ComparisonRow, f64)]) -> Option<String> {
-    let rms = |values: &[f64]| (values.iter().map(|r| r * r).sum::<f64>() / values.len() as f64).sqrt();
     let all: Vec<f64> = residuals.iter().map(|(_, r)| *r).collect();
     let threshold = STANDS_OUT * rms(&all);
-    let mut worst: Option<(f64, String)> = None;
+    let mut best: Option<(f64, String)> = None;
     for (name, factor, unit, value) in CONDITIONS {
         let levels = few_levels(residuals.iter().map(|(row, _)| value(row)));
-        for level in levels.iter().filter(|_| levels.len() > 1) {
-            let of_level = residuals.iter().filter(|(row, _)| level.holds(value(row)));
-            let of_level: Vec<f64> = of_level.map(|(_, r)| *r).collect();
+        let groups: Vec<Vec<f64>> = levels
+            .iter()
+            .map(|level| {
+                let of_level = residuals.iter().filter(|(row, _)| level.holds(value(row)));
+                of_level.map(|(_, r)| *r).collect()
+            })
+            .collect();
+        let worst = levels
+            .iter()
+            .zip(&groups)
+            .max_by(|a, b| rms(a.1).total_cmp(&rms(b.1)));
+        let Some((level, of_level)) =
+            worst.filter(|(_, of_level)| levels.len() > 1 && rms(of_level) > threshold)
+        else {
+            continue;
+        };
+        let scatter = scatter_of_sizes(&groups);
+        if best.as_ref().is_none_or(|(least, _)| scatter < *least) {
+            let middle = 0.5 * (level.from + level.to) * factor;
             let mean = of_level.iter().sum::<f64>() / of_level.len() as f64;
-            let error = rms(&of_level);
-            if error > worst.as_ref().map_or(threshold, |(largest, _)| *largest) {
-                let middle = 0.5 * (level.from + level.to) * factor;
-                let direction = match mean {
-                    m if m > 0.5 * error => ", under-predicted there",
-                    m if m < -0.5 * error => ", over-predicted there",
-                    _ => "",
-                };
-                let level = number::significant(middle, 2);
-                worst = Some((error, format!("most at {name} {level}{unit}{direction}")));
-            }
+            let direction = match mean / rms(of_level) {
+                m if m > 0.5 => ", under-predicted there",
+                m if m < -0.5 => ", over-predicted there",
+                _ => "",
+            };
+            let level = number::significant(middle, 2);
+            best = Some((scatter, format!("most at {name} {level}{unit}{direction}")));
         }
     }
-    worst.map(|(_, words)| words)
+    best.map(|(_, words)| words)
+}
+
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|r| r * r).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+/// Returns the variance of the sizes of residuals within groups; infinite where each group has one.
+fn scatter_of_sizes(groups: &[Vec<f64>]) -> f64 {
+    let within = |group: &Vec<f64>| {
+        let mean = group.iter().map(|r| r.abs()).sum::<f64>() / group.len() as f64;
+        group.iter().map(|r| (r.abs() - mean).powi(2)).sum::<f64>()
+    };
+    let degrees_of_freedom = groups
+        .iter()
+        .map(|group| group.len().saturating_sub(1))
+        .sum::<usize>();
+    match degrees_of_freedom {
+        0 => f64::INFINITY,
+        n => groups.iter().map(within).sum::<f64>() / n as f64,
+    }
 }
 
 #[cfg(test)]
@@ -80,7 +103,7 @@ mod tests {
     use super::*;
     use crate::fixture;
 
-    /// Describes the pull of runs at the given slips with the given residuals.
+    /// Describes the errors of runs at the given slips with the given residuals.
     fn words(residuals: &[(f64, f64)]) -> Option<String> {
         let calibration = fixture::calibration();
         let comparison = calibration.comparison();
@@ -93,7 +116,39 @@ mod tests {
                 ..comparison.rows[0].clone()
             })
             .collect();
-        place(Channel::DrawbarPull, &rows.iter().collect::<Vec<_>>(), &[])
+        place(&rows.iter().collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn the_condition_that_explains_the_errors_is_named_and_not_one_that_goes_along_with_it() {
+        let calibration = fixture::calibration();
+        let comparison = calibration.comparison();
+        // The load is low at 90 degrees, and lowest in the run with the largest error; two other runs have a low load as well.
+        let runs = [
+            (0.0, 24.0, 1.0),
+            (0.0, 23.0, -1.0),
+            (0.0, 14.0, 1.0),
+            (45.0, 24.0, -1.0),
+            (45.0, 14.0, 1.0),
+            (90.0, 17.0, 30.0),
+            (90.0, 17.0, 32.0),
+            (90.0, 14.0, 35.0),
+        ];
+        let rows: Vec<ComparisonRow> = runs
+            .iter()
+            .map(|&(slip_angle_deg, wheel_load_n, measured)| ComparisonRow {
+                slip_angle_deg,
+                wheel_load_n,
+                measured,
+                predicted: Some(0.0),
+                ..comparison.rows[0].clone()
+            })
+            .collect();
+        let words = place(&rows.iter().collect::<Vec<_>>());
+        assert_eq!(
+            words.as_deref(),
+            Some("most at a slip angle of 90 deg, under-predicted there")
+        );
     }
 
     #[test]

@@ -106,8 +106,8 @@ impl<'a> Judge<'a> {
         // A noise that was inferred from the misfit contains the model's error, so it can neither explain nor show a failure.
         let is_known = sigma.is_none_or(|sigma| sigma.source != SigmaSource::Inferred);
         // Errors as small as the noise that follow a condition are not noise alone.
-        let has_trend = pattern_of(&self.trends, channel).is_some();
-        let is_noise = is_known && !has_trend && by_noise.is_some_and(|p| p >= BY_CHANCE);
+        let trend = pattern_of(&self.trends, channel);
+        let is_noise = is_known && trend.is_none() && by_noise.is_some_and(|p| p >= BY_CHANCE);
         let beside_interpolation = self.beside_interpolation(channel, error.runs);
         let is_beaten = !is_noise
             && beside_interpolation.is_some_and(|both| {
@@ -117,7 +117,7 @@ impl<'a> Judge<'a> {
         let rows: Vec<_> = rows_of(self.rows, usage)
             .filter(|row| row.channel == channel)
             .collect();
-        let place = || pattern::place(channel, &rows, &self.trends);
+        let place = || trend.or_else(|| pattern::place(&rows));
         Some(ChannelFailure {
             channel,
             usage,

@@ -113,7 +113,7 @@ impl<'a> Table<'a> {
                 self.confirmed.insert(*evaluation, worker.clone());
             }
             Fact::Rewound { worker, width, .. } => self.rewind(worker, *width as u64),
-            Fact::Discovery { .. } | Fact::Quarantined { .. } => {}
+            Fact::Discovery { .. } | Fact::Quarantined { .. } | Fact::ValuesExpired { .. } => {}
             Fact::State {
                 state,
                 message,
@@ -230,6 +230,7 @@ pub(crate) fn calibration_of(fact: &Fact) -> i64 {
         | Fact::State { calibration, .. }
         | Fact::ModelVersion { calibration, .. }
         | Fact::Repinned { calibration, .. }
+        | Fact::ValuesExpired { calibration, .. }
         | Fact::Repeated { calibration, .. }
         | Fact::Confirmed { calibration, .. }
         | Fact::Quarantined { calibration, .. }

@@ -143,7 +143,7 @@ impl<'a> Witness<'a> {
                     },
                 )
             }
-            Fact::Discovery { .. } => Ok(()),
+            Fact::Discovery { .. } | Fact::ValuesExpired { .. } => Ok(()),
             Fact::Confirmed { evaluation, .. } => {
                 self.live.remove(&(id, *evaluation, true));
                 Ok(())
