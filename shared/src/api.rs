@@ -104,6 +104,18 @@ pub struct NewRuns {
     pub calibration: Option<i64>,
 }
 
+/// `POST /v1/calibrations/ID/follow`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NewFollow {
+    /// All further rows so far with a header, as in `runs.csv`.
+    pub runs: String,
+    /// The largest number of evaluations of the search for what is missing; by default, 100,000 of a model in steady motion and 2,000 of any
+    /// other.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub most_evaluations: Option<usize>,
+}
+
 /// `POST /v1/calibrations/ID/what-if`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]

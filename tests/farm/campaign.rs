@@ -139,3 +139,100 @@ fn a_malformed_run_is_refused_with_its_line() {
         .post("/v1/calibrations/99/follow", &json!({"runs": ""}));
     assert_eq!(unknown.status, 404);
 }
+
+#[test]
+fn who_watches_a_campaign_has_each_answer_as_an_event() {
+    let (job, header, more) = begun();
+    let service = Service::start(&["--local-workers", "2"]);
+    let id = service.submit(&job);
+    service.wait_for(id, "finished");
+    let first = followed(&service, id, &table(&header, &more[..1]));
+    let (client, path) = (service.client.clone(), format!("/v1/calibrations/{id}/follow"));
+    let (told, heard) = std::sync::mpsc::channel();
+    let watcher = std::thread::spawn(move || {
+        let mut count = 0;
+        client.events(&path, |event, data| {
+            assert_eq!(event, "followed");
+            told.send(serde_json::from_str::<Value>(data).expect("JSON"))
+                .expect("a listener");
+            count += 1;
+            count < 2
+        })
+    });
+    // The answer before the watcher came, then the next one.
+    assert_eq!(heard.recv().expect("an event"), first);
+    let second = followed(&service, id, &table(&header, &more[..2]));
+    assert_eq!(heard.recv().expect("an event"), second);
+    assert_eq!(second["rows"], table(&header, &more[..2]));
+    watcher.join().expect("a watcher");
+    let unknown = service.client.get("/v1/calibrations/99/follow");
+    assert_eq!(unknown.status, 404);
+}
+
+#[test]
+fn a_search_ends_at_its_bound_and_the_answer_says_so() {
+    let (job, header, more) = begun();
+    let service = Service::start(&["--local-workers", "2"]);
+    let id = service.submit(&job);
+    service.wait_for(id, "finished");
+    let rows = table(&header, &more[..1]);
+    let bounded = |most: usize| -> Value {
+        let body = json!({"runs": rows, "most_evaluations": most});
+        let answer = service
+            .client
+            .post(&format!("/v1/calibrations/{id}/follow"), &body);
+        serde_json::from_str(&answer.body).expect("JSON")
+    };
+    let whole = followed(&service, id, &rows);
+    let needed = whole["search"]["evaluations"].as_u64().expect("a number");
+    assert_eq!(whole["search"]["is_at_bound"], false);
+    assert!(needed > 100 && needed < 100_000, "{needed}");
+    let ended = bounded(needed as usize - 1);
+    let search = &ended["search"];
+    assert_eq!(search["is_at_bound"], true, "{search}");
+    assert!(search["evaluations"].as_u64().expect("a number") < needed);
+    assert_contains!(
+        ended["verdict"].as_str().expect("a sentence"),
+        &format!(
+            "not known: the search was ended at its bound of {} evaluations",
+            needed - 1
+        )
+    );
+    assert_eq!((&ended["next_runs"], &ended["stop"]), (&json!([]), &Value::Null));
+    // Posterior and weights do not depend on the search.
+    for part in ["models", "parameters", "expectations"] {
+        assert_eq!(ended[part], whole[part], "{part}");
+    }
+    assert_eq!(bounded(needed as usize)["verdict"], whole["verdict"]);
+}
+
+#[test]
+fn files_that_are_dropped_into_a_folder_become_rows() {
+    let (job, header, more) = begun();
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = job.write(&folder.path().join("job")).display().to_string();
+    let out = folder.path().join("out").display().to_string();
+    run(coordinator(["run", &path, "--out", &out])).success();
+    let dropped = folder.path().join("dropped");
+    std::fs::create_dir(&dropped).expect("a folder");
+    let write = |name: &str, text: &str| std::fs::write(dropped.join(name), text).expect("a file");
+    write("monday.csv", &table(&header, &more[..1]));
+    let wrong = more[2].replace(",fit", ",maybe");
+    write("tuesday.csv", &table(&header, &[more[1].clone(), wrong]));
+    write("wednesday.csv", &table(&header, &more[3..4]));
+    let watched = run(coordinator([
+        "watch",
+        &dropped.display().to_string(),
+        "--out",
+        &out,
+        "--once",
+    ]));
+    let said = watched.stderr.clone();
+    let printed = watched.success();
+    let name = |line: &str| line.split(',').next().expect("a name").to_owned();
+    assert_contains!(printed, &format!("2 further runs, the last {}", name(&more[3])));
+    assert_contains!(said, "tuesday.csv line 3", "set apart");
+    assert!(dropped.join("refused/tuesday.csv").exists() && !dropped.join("tuesday.csv").exists());
+    let reason = std::fs::read_to_string(dropped.join("refused/tuesday.csv.txt")).expect("the reason");
+    assert_contains!(reason, "line 3");
+}

@@ -23,6 +23,25 @@ fn calibrated(folder: &Path) -> String {
     out
 }
 
+#[test]
+fn the_decision_of_a_job_is_in_its_report() {
+    let job = Job::small().in_job("[sampler]", &format!("{DECISION}[sampler]"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = job.write(&folder.path().join("job")).display().to_string();
+    let out = folder.path().join("out");
+    let shown = out.display().to_string();
+    run(coordinator(["run", &path, "--out", &shown])).success();
+    let report = text(&out.join("report.html"));
+    assert_contains!(report, "/v1/calibrations/1/decision", "\"best\":\"climb\"");
+    // A decision by a file changes nothing in the folder, but a report of its own has it.
+    let file = folder.path().join("decision.toml").display().to_string();
+    std::fs::write(&file, DECISION.replace("\"3000\"", "\"10\"")).expect("the decision");
+    let own = folder.path().join("own.html");
+    verb(&["decide", &file, "--report", &own.display().to_string()], &shown).success();
+    assert_contains!(text(&own), "\"best\":\"stay\"");
+    assert_eq!(text(&out.join("report.html")), report);
+}
+
 fn verb(words: &[&str], out: &str) -> Ended {
     run(coordinator([words, &["--out", out]].concat()))
 }
@@ -321,6 +340,15 @@ fn a_service_decides_by_the_job_and_one_that_only_reads_predicts() {
     let decided = service.client.post(&path("decide"), &json!({}));
     assert_eq!(decided.status, 200, "{}", decided.body);
     assert_contains!(decided.body, "\"best\":\"climb\"");
+    // It is kept, and the report carries it; the next one takes its place.
+    let kept = || service.client.get(&path("decision")).body;
+    assert_eq!(kept(), decided.body);
+    let other = DECISION.replace("\"3000\"", "\"10\"");
+    let asked = service.client.post(&path("decide"), &json!({ "file": other }));
+    assert_contains!(asked.body, "\"best\":\"stay\"");
+    assert_eq!(kept(), asked.body);
+    let report = service.client.get(&path("report")).body;
+    assert_contains!(report, &format!("\"{}\":", path("decision")), "\"best\":\"stay\"");
     let unknown = service
         .client
         .post("/v1/calibrations/9/predict", &json!({"sweep": "slip=0:0.5:3"}));

@@ -48,8 +48,8 @@ def map_path_parameters(context, path_parameters):
     if path_parameters and "id" in path_parameters:
         dice = chance([path, path_parameters])
         exists = dice.random() < 0.5
-        if method == "delete":
-            path_parameters["id"] = 10**6  # The study of the example stays.
+        if method == "delete" or (method == "get" and path.endswith("/follow")):
+            path_parameters["id"] = 10**6  # The study of the example stays; the events of a campaign do not end.
         elif exists:
             path_parameters["id"] = dice.randint(1, 2)
         elif path.endswith("/events"):

@@ -7,7 +7,7 @@ import { after, before, test } from "node:test";
 import { findings, open, shot, sideways } from "./browser.js";
 import { Service, filesOf } from "./service.js";
 
-const VIEWS = ["story", "live", "compare", "failures", "effects", "posterior", "predict", "errors", "trust"];
+const VIEWS = ["story", "live", "compare", "failures", "effects", "posterior", "predict", "decide", "errors", "trust"];
 /** What is sent for the first view. */
 const MOST_BYTES = 300_000;
 let service;

@@ -39,7 +39,7 @@ for (const [theme, width] of [["light", 1280], ["dark", 400]]) {
       assert.match(await card.textContent(), /All 1000 prior draws were rejected by the model: the soil does not carry the load \(no_support.*What to do: Check wheel loads/s);
       assert.equal(await page.getByText("Nothing is finished yet").count(), 0);
       // No other view lets people wait for what will not come.
-      for (const name of ["compare", "failures", "effects", "posterior", "predict", "errors", "trust"]) {
+      for (const name of ["compare", "failures", "effects", "posterior", "predict", "decide", "errors", "trust"]) {
         await page.goto(`${service.url}/#/studies/${study}/${name}`);
         await page.locator(`section.view.${name}`).getByText("The calibration failed, so that there is nothing to show.").waitFor();
       }

@@ -18,6 +18,9 @@ import { modelName, modelOf, models } from "./words/model.js";
 /** Which study, and which of its calibrations, the file is about. */
 const shown = JSON.parse(document.getElementById("shown")?.textContent ?? "{}");
 
+/** The views that the file has numbers for: a decision is made only where one is asked for. */
+const shownViews = (/** @type {any} */ model) => VIEWS.filter((v) => v.name !== "decide" || (model && recorded(path.decision(model.id))));
+
 function Report() {
   const { answer: study, error } = useAnswer(path.study(shown.study));
   if (!study) return html`<${Pending} answer=${study} error=${error} what="the report" />`;
@@ -31,9 +34,9 @@ function Report() {
       <${Source} campaign=${study.campaign} />
       <p class="print-brief"><button type="button" onClick=${printBrief}>Print a summary of two pages</button></p>
       <${Settings} />
-      <nav class="views" aria-label="Sections">${VIEWS.map((v) => html`<a href=${`#${v.name}`}>${v.title}</a>`)}</nav>
+      <nav class="views" aria-label="Sections">${shownViews(model).map((v) => html`<a href=${`#${v.name}`}>${v.title}</a>`)}</nav>
     </header>
-    ${VIEWS.map((v) => html`
+    ${shownViews(model).map((v) => html`
       <section id=${v.name} class=${`view ${v.name}`}>
         ${v.name !== "story" && html`<h1 class="section">${v.title}</h1>`}
         <${Guarded} title=${v.title}><${ShownView} view=${v} study=${study} model=${model} query=${{}} /><//>

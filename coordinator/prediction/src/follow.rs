@@ -2,8 +2,9 @@
 
 use inference::{UpdateMethod, UpdatedPosterior};
 use job::Spec;
-use record::{Discovery, NextRun, Verdict};
+use record::{NextRun, Verdict};
 use serde::{Deserialize, Serialize};
+use shared::api::{SearchLeader, SearchProgress};
 use utoipa::ToSchema;
 
 use crate::spread::{interval, mean, variance};
@@ -16,6 +17,8 @@ pub struct Followed {
     pub calibration: i64,
     /// Names of the further runs.
     pub runs: Vec<String>,
+    /// The further rows as they were sent, with their header.
+    pub rows: String,
     /// Their measurements beside what the runs before them made probable.
     pub expectations: Vec<Expectation>,
     /// The models of the study with all runs, that of the calibration first.
@@ -24,10 +27,25 @@ pub struct Followed {
     pub parameters: Vec<FollowedParameter>,
     /// What a search of the calibration's model finds in all runs, as a sentence.
     pub verdict: String,
+    /// How far the search went.
+    pub search: FollowedSearch,
     /// The runs to make next, the most informative first.
     pub next_runs: Vec<NextRun>,
     /// Why no further run is needed or would help; null while one does.
     pub stop: Option<String>,
+}
+
+/// How far the search in all runs went.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct FollowedSearch {
+    /// Number of evaluations that it took.
+    pub evaluations: usize,
+    /// The largest number that it may take.
+    pub most_evaluations: usize,
+    /// Whether the next step would have taken more, so that there is no verdict.
+    pub is_at_bound: bool,
+    /// The most probable explanations where it was ended at its bound; else empty.
+    pub leaders: Vec<SearchLeader>,
 }
 
 /// A model of the study with all runs.
@@ -142,10 +160,24 @@ pub fn stop(verdict: Verdict, next_runs: &[NextRun]) -> Option<String> {
     }
 }
 
-/// Returns the verdict of a search as the answer states it.
-pub fn verdict(found: &Discovery) -> (String, Vec<NextRun>, Option<String>) {
-    let stop = stop(found.verdict, &found.next_runs);
-    (found.text.clone(), found.next_runs.clone(), stop)
+/// Returns the sentence in the place of a verdict where a search was ended at its bound.
+///
+/// Checked by `tests::a_search_that_was_ended_says_its_bound_and_what_leads`.
+pub fn unfinished(most_evaluations: usize, progress: &SearchProgress) -> String {
+    let leader = progress.leaders.first().map_or_else(String::new, |leader| {
+        let name = match leader.effects.as_slice() {
+            [] => "nothing is missing".to_owned(),
+            effects => effects.join(" with "),
+        };
+        format!(
+            "; the most probable of what it fitted: {name} (P {:.2})",
+            leader.probability
+        )
+    });
+    format!(
+        "not known: the search was ended at its bound of {most_evaluations} evaluations, where it {}{leader}",
+        progress.doing
+    )
 }
 
 #[cfg(test)]
@@ -174,6 +206,28 @@ mod tests {
         assert!(class.contains("class") && !class.contains("named"), "{class}");
         let law = stop(Verdict::NotInLibrary, &[run()]).unwrap();
         assert!(law.contains("law outside the catalogue"), "{law}");
+    }
+
+    #[test]
+    fn a_search_that_was_ended_says_its_bound_and_what_leads() {
+        let progress = SearchProgress {
+            doing: "tries each effect alone".into(),
+            leaders: vec![SearchLeader {
+                effects: vec!["slip_sinkage".into()],
+                probability: 0.9,
+            }],
+        };
+        let text = unfinished(100, &progress);
+        assert!(
+            text.contains("bound of 100 evaluations, where it tries each effect alone")
+                && text.ends_with("slip_sinkage (P 0.90)"),
+            "{text}"
+        );
+        let nothing = SearchProgress {
+            leaders: Vec::new(),
+            ..progress
+        };
+        assert!(unfinished(100, &nothing).ends_with("alone"));
     }
 
     #[test]

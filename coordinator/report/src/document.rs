@@ -12,28 +12,34 @@ use crate::diagnosis::diagnostics;
 use crate::overview::overview;
 use crate::provenance::provenance;
 use crate::terminal;
-use prediction::PredictionGrid;
+use prediction::{DecisionAnswer, PredictionGrid};
 use result::finished_calibration::FinishedCalibration;
 use result::response_surface::{MAX_BYTES, ResponseSurface};
 use result::study::Study;
 
+/// What a report carries of conditions that nobody measured; the caller simulates it.
+#[derive(Debug, Clone, Default)]
+pub struct ReportPredictions {
+    /// Predictions over grids.
+    pub grids: Vec<PredictionGrid>,
+    /// Decisions, at most one by each calibration.
+    pub decisions: Vec<DecisionAnswer>,
+}
+
 /// Returns the report, which shows the current model first.
-///
-/// # Arguments
-/// - `grids`: predictions over grids, which the caller simulates.
-pub fn document(study: &Study, grids: &[PredictionGrid]) -> String {
+pub fn document(study: &Study, predictions: &ReportPredictions) -> String {
     let shown = study.current().unwrap_or(&study.lead);
     report(&Report {
         title: &format!("Calibration report: {}", study.lead.experiment),
         text: &terminal::study(study),
         study: shown.row.study,
         calibration: shown.row.id,
-        answers: &answers(study, grids),
+        answers: &answers(study, predictions),
     })
 }
 
 /// Returns the answers of a service about a study, keyed by path.
-pub fn answers(study: &Study, grids: &[PredictionGrid]) -> Map<String, Value> {
+pub fn answers(study: &Study, predictions: &ReportPredictions) -> Map<String, Value> {
     let overview = overview(study);
     let mut answers = Map::new();
     let mut add = |path: String, answer: Value| {
@@ -51,10 +57,16 @@ pub fn answers(study: &Study, grids: &[PredictionGrid]) -> Map<String, Value> {
         add(path("provenance"), json(&provenance(calibration)));
         add(path("stages"), json(&calibration.stages()));
     }
-    for grid in grids {
+    for grid in &predictions.grids {
         add(
             format!("calibrations/{}/prediction-grid", grid.calibration),
             json(grid),
+        );
+    }
+    for decision in &predictions.decisions {
+        add(
+            format!("calibrations/{}/decision", decision.calibration),
+            json(decision),
         );
     }
     for (calibration, surface) in surfaces(study) {
@@ -109,7 +121,7 @@ mod tests {
     #[test]
     fn every_calibration_and_every_search_is_in_the_report() {
         let study = fixture::grown();
-        let answers = answers(&study, &[]);
+        let answers = answers(&study, &ReportPredictions::default());
         let count = |what: &str| answers.keys().filter(|path| path.ends_with(what)).count();
         assert_eq!(count("/discovery"), study.rounds.len());
         assert_eq!(count("/comparison"), study.calibrations().count());
@@ -125,7 +137,7 @@ mod tests {
             other_models: vec![other],
             ..Study::from(fixture::calibration())
         };
-        let answers = answers(&study, &[]);
+        let answers = answers(&study, &ReportPredictions::default());
         let models = &answers[&format!("/v1/studies/{}", study.lead.row.study)]["models"];
         assert_eq!(models["best"], study.lead.row.id);
         assert_eq!(models["models"].as_array().map(Vec::len), Some(2));
@@ -140,14 +152,17 @@ mod tests {
 
     #[test]
     fn names_of_users_are_escaped() {
-        let document = document(&fixture::study(), &[]);
+        let document = document(&fixture::study(), &ReportPredictions::default());
         assert!(document.contains("\\u003cscript>") && document.contains("&lt;script&gt;"));
         assert!(!document.contains("<script>alert"));
     }
 
     #[test]
     fn equal_studies_give_equal_reports() {
-        assert_eq!(document(&fixture::study(), &[]), document(&fixture::study(), &[]));
+        assert_eq!(
+            document(&fixture::study(), &ReportPredictions::default()),
+            document(&fixture::study(), &ReportPredictions::default())
+        );
     }
 
     #[test]
@@ -158,7 +173,7 @@ mod tests {
             fixture::fit(),
             fixture::search(),
         ] {
-            let document = document(&Study::from(calibration), &[]);
+            let document = document(&Study::from(calibration), &ReportPredictions::default());
             assert!(document.ends_with("</html>\n"));
         }
     }

@@ -3,16 +3,18 @@
 use std::collections::BTreeMap;
 
 use crate::diagnosis::diagnostics;
-use crate::document::document;
+use crate::document::{ReportPredictions, document};
 use crate::overview::{StudyOverview, overview};
 use crate::provenance::provenance;
 use crate::story::Story;
 use crate::summary::study::summary;
 use crate::terminal;
-use prediction::PredictionGrid;
 use result::finished_calibration::FinishedCalibration;
 use result::study::Study;
 use result::table::prediction::to_csv;
+
+/// The beginning of the names of decisions.
+const DECISION: &str = "decision-";
 
 /// A file of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -116,7 +118,7 @@ pub fn files(study: &Study) -> BTreeMap<String, String> {
     files.extend(
         of_study
             .into_iter()
-            .filter_map(|kind| Some((kind.name(), file(study, &[], kind)?))),
+            .filter_map(|kind| Some((kind.name(), file(study, &ReportPredictions::default(), kind)?))),
     );
     let of_calibrations = [CalibrationFile::Diagnostics, CalibrationFile::Provenance];
     files.extend(study.calibrations().flat_map(|calibration| {
@@ -139,17 +141,27 @@ pub fn grid_name(calibration: i64) -> String {
     format!("prediction-grid-{calibration}.json")
 }
 
+/// Returns the name of the file with the last decision by a calibration.
+pub fn decision_name(calibration: i64) -> String {
+    format!("{DECISION}{calibration}.json")
+}
+
+/// Returns whether a file is a decision.
+pub fn is_decision(name: &str) -> bool {
+    name.starts_with(DECISION)
+}
+
 /// Returns the text of a file; `None` for figures of a calibration that is not a finished one of the study.
 ///
 /// # Arguments
-/// - `grids`: predictions over grids, which a report carries.
-pub fn file(study: &Study, grids: &[PredictionGrid], file: StudyFile) -> Option<String> {
+/// - `predictions`: what a report carries.
+pub fn file(study: &Study, predictions: &ReportPredictions, file: StudyFile) -> Option<String> {
     Some(match file {
         StudyFile::Summary => json(&summary(study)) + "\n",
         StudyFile::Posterior => study.current().unwrap_or(&study.lead).posterior_table().to_csv(),
         StudyFile::Predictions => to_csv(&study.predictions()),
         StudyFile::PredictionRows => compact(&study.predictions()),
-        StudyFile::Report => document(study, grids),
+        StudyFile::Report => document(study, predictions),
         StudyFile::Details => terminal::study(study),
         StudyFile::Brief => terminal::brief(study),
         StudyFile::Story => json(&Story::current(study)) + "\n",

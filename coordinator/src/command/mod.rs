@@ -10,6 +10,7 @@ mod exposure;
 mod folder;
 mod growth;
 mod import;
+mod incoming;
 mod job_on_disk;
 mod output;
 mod place;

@@ -8,7 +8,7 @@ use shared::text_file::read_text;
 
 use super::output::say;
 use super::place::Place;
-use super::verbs::current;
+use super::verbs::{current, write};
 use crate::config::{DecideArguments, PredictArguments, PredictionFormat};
 use report::terminal;
 
@@ -49,10 +49,15 @@ pub(super) async fn decide(config: &DecideArguments) -> anyhow::Result<()> {
     let answer: DecisionAnswer = place
         .post(&format!("/v1/calibrations/{id}/decide"), &asked)
         .await?;
-    Ok(say(&match config.format {
+    say(&match config.format {
         PredictionFormat::Json => json(&answer)?,
         PredictionFormat::Text | PredictionFormat::Csv => terminal::decision(&answer),
-    })?)
+    })?;
+    if let Some(path) = &config.report {
+        let report = place.text(&format!("/v1/calibrations/{id}/report")).await?;
+        write(Some(path), &report, "report.html")?;
+    }
+    Ok(())
 }
 
 fn json(value: &impl Serialize) -> anyhow::Result<String> {

@@ -1,37 +1,61 @@
-//! `coordinator watch`: follows the runs of a file while a campaign lasts.
+//! `coordinator watch`: follows the runs of a file, or of the files of a folder, while a campaign lasts.
 
-use std::collections::BTreeSet;
-use std::path::Path;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, bail};
+use anyhow::{Context, ensure};
 use prediction::follow::Followed;
-use shared::api::NewRuns;
+use serde::Deserialize;
+use shared::api::{CalibrationStatus, NewFollow};
+use shared::experiment::Experiment;
+use shared::file::FileSet;
 use shared::text_file::read_text;
 
+use super::incoming::Incoming;
 use super::output::{remark, say};
 use super::place::Place;
 use super::predict::target;
 use crate::config::WatchArguments;
 use report::terminal;
-use result::Comparison;
 
 /// Interval between two looks at the file.
 const LOOK: Duration = Duration::from_millis(200);
 /// Interval after a look that failed, because a service that is away or refuses a row is not asked five times a second.
 const LOOK_AGAIN: Duration = Duration::from_secs(2);
 
+/// An experiment as the service answers it.
+#[derive(Deserialize)]
+struct StoredExperiment {
+    toml: String,
+    files: BTreeMap<String, String>,
+}
+
 pub(super) async fn watch(config: &WatchArguments) -> anyhow::Result<()> {
     let place = Place::open(&config.source).await?;
     let id = target(&place, config.id).await?;
-    let comparison: Comparison = place.get(&format!("/v1/calibrations/{id}/comparison")).await?;
-    let known: BTreeSet<String> = comparison.rows.into_iter().map(|row| row.run).collect();
-    let mut followed = String::new();
+    let status: CalibrationStatus = place.get(&format!("/v1/calibrations/{id}")).await?;
+    let stored: StoredExperiment = place
+        .get(&format!("/v1/experiments/{}", status.experiment))
+        .await?;
+    let experiment = FileSet {
+        toml: stored.toml,
+        files: stored.files,
+    };
+    let file = Experiment::runs_file("experiment.toml", &experiment)?;
+    let mut watch = Watch {
+        known: run_names(experiment.named("experiment.toml", &file)?, Path::new(&file))?,
+        rows: Rows::new(config, experiment)?,
+        place,
+        id,
+        most_evaluations: config.most_evaluations,
+        followed: String::new(),
+    };
     let mut said = String::new();
     loop {
-        let looked = look(&place, id, &known, &config.runs, &mut followed).await;
-        if config.once {
-            return looked;
+        let looked = watch.look(Instant::now()).await;
+        if config.once && !matches!(looked, Ok(true)) {
+            return looked.map(|_| ());
         }
         // An editor that saves the file takes it away for a moment, a row may be mistyped, and a service may be away.
         let problem = looked
@@ -46,27 +70,90 @@ pub(super) async fn watch(config: &WatchArguments) -> anyhow::Result<()> {
     }
 }
 
-/// Follows the rows that the file has now, unless they are those that were followed last.
-async fn look(
-    place: &Place,
+/// Where the rows of further runs come from.
+enum Rows {
+    /// A file to which rows are appended.
+    File(PathBuf),
+    /// A folder into which files are dropped.
+    Folder(Incoming),
+}
+
+impl Rows {
+    fn new(config: &WatchArguments, experiment: FileSet) -> anyhow::Result<Rows> {
+        let map = config
+            .map
+            .as_ref()
+            .map(|map| -> anyhow::Result<_> { Ok((map.display().to_string(), read_text(map)?)) });
+        let map = map.transpose()?;
+        if config.runs.is_dir() {
+            return Ok(Rows::Folder(Incoming::new(&config.runs, map, experiment)));
+        }
+        ensure!(
+            map.is_none(),
+            "--map is of a folder, but {} is none",
+            config.runs.display()
+        );
+        Ok(Rows::File(config.runs.clone()))
+    }
+}
+
+/// A campaign that is watched.
+struct Watch {
+    place: Place,
     id: i64,
-    known: &BTreeSet<String>,
-    path: &Path,
-    followed: &mut String,
-) -> anyhow::Result<()> {
-    let text = read_text(path)?;
-    let Some(runs) = changed_rows(&text, known, path, followed)? else {
-        return Ok(());
-    };
-    let begin = Instant::now();
-    let new = NewRuns {
-        runs: runs.clone(),
-        calibration: None,
-    };
-    let answer: Followed = place.post(&format!("/v1/calibrations/{id}/follow"), &new).await?;
-    say(&terminal::followed(&answer, begin.elapsed().as_secs_f64()))?;
-    *followed = runs;
-    Ok(())
+    /// Names of the runs of the calibration's experiment.
+    known: BTreeSet<String>,
+    rows: Rows,
+    most_evaluations: Option<usize>,
+    /// The rows that were followed last.
+    followed: String,
+}
+
+impl Watch {
+    /// Follows the rows that there are now, unless they are those that were followed last. Returns whether a file may still be written.
+    async fn look(&mut self, now: Instant) -> anyhow::Result<bool> {
+        let (changed, is_waiting) = match &mut self.rows {
+            Rows::File(path) => {
+                let text = read_text(path)?;
+                // A row that is being written has no line end yet.
+                let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
+                (changed_rows(whole, &self.known, path, &self.followed)?, false)
+            }
+            Rows::Folder(incoming) => {
+                let is_waiting = incoming.take(now)?;
+                let path = Path::new("runs.csv");
+                (
+                    changed_rows(incoming.table()?, &self.known, path, &self.followed)?,
+                    is_waiting,
+                )
+            }
+        };
+        if let Some(runs) = changed {
+            let begin = Instant::now();
+            let new = NewFollow {
+                runs: runs.clone(),
+                most_evaluations: self.most_evaluations,
+            };
+            let answer: Followed = self
+                .place
+                .post(&format!("/v1/calibrations/{}/follow", self.id), &new)
+                .await?;
+            say(&terminal::followed(&answer, begin.elapsed().as_secs_f64()))?;
+            self.followed = runs;
+        }
+        Ok(is_waiting)
+    }
+}
+
+/// Returns the names of the runs of a table.
+fn run_names(text: &str, path: &Path) -> anyhow::Result<BTreeSet<String>> {
+    let (mut reader, run) = reader(text, path)?;
+    let mut names = BTreeSet::new();
+    for record in reader.records() {
+        let record = record.with_context(|| path.display().to_string())?;
+        names.extend(record.get(run).map(str::to_owned));
+    }
+    Ok(names)
 }
 
 /// Returns the rows of runs that are not known; `None` without any, or where they are those that were followed last.
@@ -76,28 +163,19 @@ fn changed_rows(
     path: &Path,
     followed: &str,
 ) -> anyhow::Result<Option<String>> {
-    // A row that is being written has no line end yet.
-    let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
-    let (runs, count) = new_rows(whole, known, path)?;
+    let (runs, count) = new_rows(text, known, path)?;
     Ok((count > 0 && runs != followed).then_some(runs))
 }
 
 /// Returns the rows of runs that are not known, with the header, and their number.
 fn new_rows(text: &str, known: &BTreeSet<String>, path: &Path) -> anyhow::Result<(String, usize)> {
-    let name = || path.display().to_string();
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes());
-    let header = reader.headers().with_context(name)?.clone();
-    let Some(run) = header.iter().position(|column| column == "run") else {
-        bail!("{}: the column run is missing", path.display());
-    };
+    let (mut reader, run) = reader(text, path)?;
+    let header = reader.headers()?.clone();
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(&header)?;
     let mut count = 0;
     for record in reader.records() {
-        let record = record.with_context(name)?;
+        let record = record.with_context(|| path.display().to_string())?;
         if record.get(run).is_some_and(|run| !known.contains(run)) {
             writer.write_record(&record)?;
             count += 1;
@@ -105,6 +183,18 @@ fn new_rows(text: &str, known: &BTreeSet<String>, path: &Path) -> anyhow::Result
     }
     let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
     Ok((String::from_utf8(bytes)?, count))
+}
+
+/// Returns a reader of a table, and the position of the column `run`.
+fn reader<'a>(text: &'a str, path: &Path) -> anyhow::Result<(csv::Reader<&'a [u8]>, usize)> {
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes());
+    let header = reader.headers().with_context(|| path.display().to_string())?;
+    let run = header.iter().position(|column| column == "run");
+    let run = run.with_context(|| format!("{}: the column run is missing", path.display()))?;
+    Ok((reader, run))
 }
 
 #[cfg(test)]
@@ -116,7 +206,7 @@ mod tests {
         let known = BTreeSet::from(["a".to_owned()]);
         let changed =
             |text: &str, followed: &str| changed_rows(text, &known, Path::new("runs.csv"), followed).unwrap();
-        let first = changed("run,slip\na,0.1\nb,0.2\nc,0", "").expect("a row");
+        let first = changed("run,slip\na,0.1\nb,0.2\n", "").expect("a row");
         assert_eq!(first, "run,slip\nb,0.2\n");
         assert_eq!(changed("run,slip\na,0.1\nb,0.2\n", &first), None);
         let corrected = changed("run,slip\na,0.1\nb,0.3\n", &first);

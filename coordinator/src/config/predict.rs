@@ -50,17 +50,28 @@ pub struct DecideArguments {
     /// What is printed.
     #[arg(long, value_enum, default_value_t = PredictionFormat::Text)]
     pub format: PredictionFormat,
+    /// Writes the report of the study with this decision to a file, too.
+    #[arg(long, value_name = "FILE")]
+    pub report: Option<PathBuf>,
 }
 
-/// Follow the runs of a file.
+/// Follow the runs of a file or of the files of a folder.
 #[derive(Debug, Args)]
 pub struct WatchArguments {
-    /// CSV file with the columns of `runs.csv`; rows of runs that the calibration has already are passed over.
+    /// CSV file with the columns of `runs.csv`, to which rows are appended; or a folder into which such files are dropped, and recordings or
+    /// other tables with `--map`. Rows of the file for runs that the calibration has already are passed over.
     pub runs: PathBuf,
     /// Id of the calibration; by default, the current model of the only study.
     pub id: Option<i64>,
     #[command(flatten)]
     pub source: SourceArguments,
+    /// TOML file that says what the columns of a recording or a table in the folder are, as `import` reads it.
+    #[arg(long, value_name = "FILE")]
+    pub map: Option<PathBuf>,
+    /// Largest number of evaluations of the search for what is missing after each run; by default, 100,000 of a model in steady motion and
+    /// 2,000 of any other.
+    #[arg(long, value_name = "COUNT")]
+    pub most_evaluations: Option<usize>,
     /// Ends after the rows that the file has now.
     #[arg(long)]
     pub once: bool,

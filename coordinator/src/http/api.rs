@@ -3,8 +3,8 @@
 use utoipa_axum::router::OpenApiRouter;
 
 use super::{
-    calibrations, document, effects, events, examples, experiments, growth, import, job_check, predictions,
-    studies, work,
+    calibrations, campaign, document, effects, events, examples, experiments, growth, import, job_check,
+    predictions, studies, work,
 };
 use crate::service::Service;
 
@@ -18,6 +18,7 @@ pub(super) fn api() -> OpenApiRouter<Service> {
         .merge(calibrations::routes())
         .merge(job_check::routes())
         .merge(events::routes())
+        .merge(campaign::routes())
         .merge(studies::routes())
         .merge(predictions::routes())
         .merge(work::routes())

@@ -11,6 +11,7 @@ mod api;
 mod body;
 mod body_memory;
 mod calibrations;
+mod campaign;
 mod client_stream;
 mod connections;
 mod document;

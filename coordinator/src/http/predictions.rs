@@ -4,10 +4,9 @@ use axum::Json;
 use axum::extract::State;
 use axum::response::IntoResponse;
 use job::PlannedCondition;
-use prediction::follow::Followed;
 use prediction::recording::FollowedRecording;
 use prediction::{DecisionAnswer, Prediction, PredictionGrid, drawn_model};
-use shared::api::{ErrorBody, NewDecision, NewPrediction, NewRecording, NewRuns};
+use shared::api::{ErrorBody, NewDecision, NewPrediction, NewRecording};
 use shared::model::DrawnModel;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -22,8 +21,8 @@ pub(super) fn routes() -> OpenApiRouter<Service> {
         .routes(routes!(predict))
         .routes(routes!(grid))
         .routes(routes!(decide))
+        .routes(routes!(decision))
         .routes(routes!(drawn))
-        .routes(routes!(follow))
         .routes(routes!(stream))
 }
 
@@ -65,7 +64,7 @@ async fn grid(State(service): State<Service>, Id(id): Id) -> Result<impl IntoRes
 /// Compares the options of a decision.
 ///
 /// Expected losses over the posterior of all models of the study, the best option and by how much, what decides it, and what one more run
-/// is worth against its cost. Nothing is stored.
+/// is worth against its cost. The answer is kept for the page and the report until the study changes or another decision is asked for.
 #[utoipa::path(post, path = "/calibrations/{id}/decide", operation_id = "decide", tag = "results",
     params(("id" = i64, Path, description = "id of a calibration with a posterior")), request_body = NewDecision, responses(
     (status = 200, description = "the losses of the options", body = DecisionAnswer),
@@ -79,6 +78,21 @@ async fn decide(
     Body(asked): Body<NewDecision>,
 ) -> Result<Json<DecisionAnswer>, HttpError> {
     Ok(Json(service.decide(id, asked).await?))
+}
+
+/// The decision by a calibration.
+///
+/// The answer to the decision that was asked for last or, without one, to the table `[decision]` of the calibration's job; null where there
+/// is neither.
+#[utoipa::path(get, path = "/calibrations/{id}/decision", operation_id = "get_decision", tag = "results",
+    params(("id" = i64, Path, description = "id of a calibration with a posterior")), responses(
+    (status = 200, description = "the losses of the options, or null", body = Option<DecisionAnswer>),
+    (status = 404, body = ErrorBody),
+    (status = 409, body = ErrorBody, description = "the calibration is not finished, has no draws, or its model cannot be evaluated here"),
+    (status = 422, body = ErrorBody, description = "the decision of the job is malformed, or a loss has no value"),
+))]
+async fn decision(State(service): State<Service>, Id(id): Id) -> Result<impl IntoResponse, HttpError> {
+    Ok(json(service.decision(id).await?))
 }
 
 /// The model with its draws.
@@ -110,26 +124,6 @@ async fn drawn(
     let calibration = service.finished_calibration(id).await?;
     let model = drawn_model(&calibration, &stated).map_err(ServiceError::from)?;
     Ok(Json(model))
-}
-
-/// What further runs change.
-///
-/// Posterior, weights of the models and verdict of a search with further runs, by the draws so far: weighted anew, or by a few stages of new
-/// ones. The answer has the runs to make next, the probability that the first settles what is missing, and which run contradicts all others.
-/// Nothing is stored; `POST /v1/studies/ID/runs` adds runs for good.
-#[utoipa::path(post, path = "/calibrations/{id}/follow", operation_id = "follow", tag = "results",
-    params(("id" = i64, Path, description = "id of a calibration with a posterior")), request_body = NewRuns, responses(
-    (status = 200, description = "the campaign with all runs", body = Followed),
-    (status = 404, body = ErrorBody),
-    (status = 409, body = ErrorBody, description = "the calibration is not finished, has no draws, or its model cannot be evaluated here"),
-    (status = 422, body = ErrorBody, description = "a row is malformed, or its run exists already"),
-))]
-async fn follow(
-    State(service): State<Service>,
-    Id(id): Id,
-    Body(asked): Body<NewRuns>,
-) -> Result<Json<Followed>, HttpError> {
-    Ok(Json(service.follow(id, asked).await?))
 }
 
 /// Follows a recording.

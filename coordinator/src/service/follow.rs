@@ -3,12 +3,14 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use shared::api::NewRuns;
+use shared::api::{NewFollow, SearchProgress};
 use shared::experiment::Experiment;
 use shared::file::FileSet;
 use shared::outcome::Outcome;
 
+use super::campaign::Answers;
 use super::error::ServiceError;
+use super::finished_study::check_finished;
 use super::handle::Service;
 use super::simulation::{in_parallel, simulate};
 use super::stored_calibration::FILES;
@@ -16,12 +18,18 @@ use crate::embedded::Evaluate;
 use farm::calibration::MAX_EFFECTS_TOGETHER;
 use inference::{PosteriorUpdate, UpdateProgress, UpdatedPosterior};
 use job::{Job, PlannedRun, Spec, continued_job};
-use prediction::follow::{Followed, FollowedModel, parameters, verdict, weigh};
+use prediction::follow::{Followed, FollowedModel, FollowedSearch, parameters, stop, unfinished, weigh};
 use prediction::surprise::expectations;
 use prediction::{Ensemble, PredictionError, Question};
 use record::Discovery;
 use result::{FinishedCalibration, Outcome as Found, Study};
 use search::{RunningDiscovery, SearchModels};
+
+/// Largest number of evaluations of a search by models in steady motion, where the request states none: some ten times those of
+/// `examples/hidden-effect`.
+const STEADY_EVALUATIONS: usize = 100_000;
+/// The same of a search by any other model: minutes.
+const SLOW_EVALUATIONS: usize = 2_000;
 
 impl Service {
     /// Adds runs to a calibration without storing anything: the posterior of each model of its study, their weights, the verdict of a search,
@@ -29,20 +37,36 @@ impl Service {
     ///
     /// # Errors
     /// [`ServiceError`]: the calibration has no posterior, or a row is malformed.
-    pub async fn follow(&self, id: i64, asked: NewRuns) -> Result<Followed, ServiceError> {
+    pub async fn follow(&self, id: i64, asked: NewFollow) -> Result<Followed, ServiceError> {
         let row = self.calibration_row(id).await?;
         let files = self.experiment(row.experiment).await?;
-        self.alone(id, move |study| followed(study, id, &files, &asked.runs))
-            .await
+        let answer = self
+            .alone(id, move |study| followed(study, id, &files, asked))
+            .await?;
+        self.campaigns.tell(answer.clone());
+        Ok(answer)
+    }
+
+    /// Returns the answers to the further runs of a calibration, from the last one on.
+    ///
+    /// # Errors
+    /// [`ServiceError::NotFound`]; [`ServiceError::Control`] if it is not finished.
+    pub async fn campaign(&self, id: i64) -> Result<Answers, ServiceError> {
+        check_finished(&self.calibration_row(id).await?)?;
+        Ok(self.campaigns.answers(id))
     }
 }
 
-fn followed(study: Study, id: i64, files: &FileSet, csv: &str) -> Result<Followed, PredictionError> {
-    let (enlarged, _) = Experiment::with_runs(FILES[1], files, csv)?;
+fn followed(study: Study, id: i64, files: &FileSet, asked: NewFollow) -> Result<Followed, PredictionError> {
+    let (enlarged, _) = Experiment::with_runs(FILES[1], files, &asked.runs)?;
     let experiment = Arc::new(Experiment::parse(FILES[1], &enlarged)?);
     let ensemble = Ensemble::new(study, id, BTreeMap::new())?;
     // A posterior is updated by simulations of all runs, in up to nine rounds of this many draws.
     let most_draws = ensemble.affordable_draws(experiment.runs.len())?;
+    let most_evaluations = asked.most_evaluations.unwrap_or(match ensemble.is_fast() {
+        true => STEADY_EVALUATIONS,
+        false => SLOW_EVALUATIONS,
+    });
     let before = ensemble.asked().spec.experiment.runs.len();
     let gravity_m_s2 = experiment.rig.gravity_m_s2;
     let added = experiment.runs[before..].iter().map(|run| PlannedRun {
@@ -74,17 +98,27 @@ fn followed(study: Study, id: i64, files: &FileSet, csv: &str) -> Result<Followe
     }
     weigh(&mut models);
     let job = &simulated.models[0].calibration.row.job;
-    let found = searched(&continued_job(FILES[0], job)?, &enlarged)?;
-    let (verdict, next_runs, stop) = verdict(&found);
+    let search = searched(&continued_job(FILES[0], job)?, &enlarged, most_evaluations)?;
+    let found = search.found.as_ref();
     Ok(Followed {
         calibration: id,
         runs: added.iter().map(|planned| planned.run.name.clone()).collect(),
         expectations: expectations(&simulated, &added),
         models,
         parameters: of_asked,
-        verdict,
-        next_runs,
-        stop,
+        verdict: match found {
+            Some(found) => found.text.clone(),
+            None => unfinished(most_evaluations, &search.progress),
+        },
+        search: FollowedSearch {
+            evaluations: search.evaluations,
+            most_evaluations,
+            is_at_bound: found.is_none(),
+            leaders: found.map_or(search.progress.leaders, |_| Vec::new()),
+        },
+        next_runs: found.map_or_else(Vec::new, |found| found.next_runs.clone()),
+        stop: found.and_then(|found| stop(found.verdict, &found.next_runs)),
+        rows: asked.runs,
     })
 }
 
@@ -151,16 +185,38 @@ fn spaced<T: Clone>(all: &[T], most: usize) -> Vec<T> {
     (0..count).map(|i| all[i * all.len() / count].clone()).collect()
 }
 
-/// Searches the model of a job for a missing effect, as the farm does, in this process.
-fn searched(job: &FileSet, experiment: &FileSet) -> Result<Discovery, PredictionError> {
+/// A search in all runs.
+struct Searched {
+    /// What it found; `None` where it was ended at its bound.
+    found: Option<Discovery>,
+    /// Number of evaluations that it took.
+    evaluations: usize,
+    /// Where it was when it ended.
+    progress: SearchProgress,
+}
+
+/// Searches the model of a job for a missing effect, as the farm does, in this process. The search is ended before the round with which it
+/// would take more than `most_evaluations`.
+fn searched(
+    job: &FileSet,
+    experiment: &FileSet,
+    most_evaluations: usize,
+) -> Result<Searched, PredictionError> {
     let model = |e: &dyn std::fmt::Display| PredictionError::Model(e.to_string());
     let models = SearchModels::new(job, experiment, MAX_EFFECTS_TOGETHER)?;
     let mut running = RunningDiscovery::new(models).map_err(|e| model(&e))?;
+    let mut evaluations = 0;
     loop {
-        if let Some(found) = running.record() {
-            return Ok(found);
-        }
+        let found = running.record();
         let asked: Vec<usize> = running.pending().iter().map(|query| query.particle).collect();
+        if found.is_some() || evaluations + asked.len() > most_evaluations {
+            return Ok(Searched {
+                found,
+                evaluations,
+                progress: running.progress(),
+            });
+        }
+        evaluations += asked.len();
         let answer = |place: usize| -> Result<Option<Vec<f64>>, String> {
             let particle = asked[place];
             let Some((variant, theta)) = running

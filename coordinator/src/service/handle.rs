@@ -7,6 +7,7 @@ use shared::api::{CalibrationState, CalibrationStatus};
 use shared::exchange::{ExchangeRequest, ExchangeResponse};
 use shared::file::FileSet;
 
+use super::campaign::Campaigns;
 use super::clock::now_ms;
 use super::error::ServiceError;
 use super::farm_settings::{FarmSettings, LEASE_MS};
@@ -33,6 +34,7 @@ pub struct Service {
     left_alone: Arc<BTreeMap<i64, String>>,
     pub(super) webhook_hosts: WebhookHosts,
     pub(super) results: ResultCache,
+    pub(super) campaigns: Campaigns,
     /// A lock that a task holds while it adds to a study, so that it sees all earlier additions.
     pub(super) growing: Arc<tokio::sync::Mutex<()>>,
 }
@@ -56,6 +58,7 @@ impl Service {
             left_alone,
             webhook_hosts: WebhookHosts::default(),
             results,
+            campaigns: Campaigns::default(),
             growing: Arc::default(),
         })
     }
@@ -82,6 +85,7 @@ impl Service {
             left_alone: Arc::default(),
             webhook_hosts: WebhookHosts::default(),
             results,
+            campaigns: Campaigns::default(),
             growing: Arc::default(),
         })
     }

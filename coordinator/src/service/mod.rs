@@ -13,7 +13,7 @@
 //! - `stored_calibration`, `study_step`, `finished_study`: values that are read from the store.
 //! - `study_members`: the members of a study.
 //! - `results`: the texts about studies and calibrations, kept in the `result_cache`. `study_overview`: studies for the page.
-//! - `follow`: further runs of a campaign while it lasts.
+//! - `follow`: further runs of a campaign while it lasts; `campaign`: its last answer, for those who watch.
 //! - `job_check`: a job before it is submitted, with its cost.
 //! - `predictions`: conditions of one's own and decisions; `simulation`: their simulations in this process.
 //! - `recording`: recordings that are followed.
@@ -21,6 +21,7 @@
 
 mod announcement;
 mod background;
+mod campaign;
 mod clock;
 mod effects;
 mod error;

@@ -50,18 +50,23 @@ impl Service {
         Ok(serde_json::to_string(&grid).expect("results have a JSON form"))
     }
 
-    /// Compares the options of a decision by their expected losses.
+    /// Compares the options of a decision by their expected losses. The answer is kept until the study changes, or another is asked for.
     ///
     /// # Errors
     /// [`ServiceError`]: the calibration has no posterior, or the decision is malformed.
     pub async fn decide(&self, id: i64, asked: NewDecision) -> Result<DecisionAnswer, ServiceError> {
+        let row = self.calibration_row(id).await?;
+        let (stamp, _) = self.stamped_members(row.study).await?;
         let (name, file) = match asked.file {
             Some(file) => (DECISION, file),
-            None => (JOB, self.calibration_row(id).await?.job.toml),
+            None => (JOB, row.job.toml.clone()),
         };
         let draws = asked.draws;
-        self.alone(id, move |study| decided(study, id, (name, &file), draws))
-            .await
+        let answer = self
+            .alone(id, move |study| decided(study, id, (name, &file), draws))
+            .await?;
+        self.keep_decision(&row, stamp, &answer).await?;
+        Ok(answer)
     }
 
     /// Computes from the study of a calibration outside the threads of the runtime, one at a time.
@@ -96,6 +101,13 @@ pub(super) fn current_grid(study: &Study) -> Vec<PredictionGrid> {
     };
     let grid = prediction_grid(study.clone(), current.row.id, |question| simulate(&question));
     grid.ok().into_iter().collect()
+}
+
+/// Returns the decision that the job of the current model of a study states; `None` where it states none, or where it has no value.
+pub(super) fn current_decision(study: &Study) -> Option<DecisionAnswer> {
+    let current = study.current()?;
+    let file = current.row.job.toml.clone();
+    decided(study.clone(), current.row.id, (JOB, &file), None).ok()
 }
 
 fn predicted(study: Study, id: i64, asked: &NewPrediction) -> Result<Prediction, PredictionError> {

@@ -5,10 +5,11 @@ use std::ops::RangeInclusive;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use report::StudyFile;
+use report::study_file::is_decision;
 use store::{Stamp, Store, StoreError, StudyResults};
 
 /// The cache of texts about studies, each under the stamp of the state from which it was computed. The texts are in the store's table of
-/// results. A store that is opened for reading alone takes none: then overviews and lines of the list are kept in memory.
+/// results. A store that is opened for reading alone takes none: then overviews, lines of the list and decisions are kept in memory.
 #[derive(Debug, Clone)]
 pub(super) struct ResultCache {
     store: Store,
@@ -73,14 +74,22 @@ impl ResultCache {
             return self.store.writer().keep_results(results).await;
         }
         let in_lists = [StudyFile::Overview, StudyFile::ListItem].map(StudyFile::name);
-        results.files.retain(|name, _| in_lists.contains(name));
+        results
+            .files
+            .retain(|name, _| in_lists.contains(name) || is_decision(name));
         let (present, _) = self
             .store
             .reader()
             .stamped_study(results.study, results.stamp.build())
             .await?;
         if !results.files.is_empty() && results.stamp == present {
-            self.in_memory().insert(results.study, results);
+            let mut in_memory = self.in_memory();
+            let kept = in_memory.remove(&results.study);
+            let kept = kept.filter(|kept| kept.stamp == results.stamp);
+            // What is new stands in the place of what was kept.
+            let mut files = kept.map_or_else(BTreeMap::new, |kept| kept.files);
+            files.extend(results.files);
+            in_memory.insert(results.study, StudyResults { files, ..results });
         }
         Ok(())
     }

@@ -4,16 +4,20 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 use serde_json::value::RawValue;
-use shared::api::CalibrationState;
+use shared::api::{CalibrationState, NewDecision};
 
 use super::error::ServiceError;
 use super::finished_study::{check_finished, finished_calibration, finished_study};
 use super::handle::Service;
-use super::predictions::current_grid;
+use super::predictions::{current_decision, current_grid};
+use super::stored_calibration::FILES;
+use job::Job;
+use prediction::DecisionAnswer;
 use record::CalibrationRow;
-use report::study_file::{files, grid_name, overview_files};
+use report::document::ReportPredictions;
+use report::study_file::{decision_name, files, grid_name, overview_files};
 use report::{CalibrationFile, StudyFile, StudyOverview};
-use result::FinishedCalibration;
+use result::{FinishedCalibration, Study};
 use store::{Stamp, StoreError, StudyResults};
 
 /// The digest of the sources of this program.
@@ -83,7 +87,13 @@ impl Service {
         file: StudyFile,
     ) -> Result<String, ServiceError> {
         let name = file.name();
-        if let Some(text) = self.results.text(row.study, &name, &stamp).await? {
+        let decisions = match file {
+            StudyFile::Report => self.kept_decisions(rows, &stamp).await?,
+            _ => Vec::new(),
+        };
+        // A report that has a decision is not kept, because another may be asked for at any time.
+        let is_kept = decisions.is_empty();
+        if is_kept && let Some(text) = self.results.text(row.study, &name, &stamp).await? {
             return Ok(text);
         }
         let study = finished_study(&self.store().reader(), row, rows).await?;
@@ -92,21 +102,21 @@ impl Service {
         let is_of_list = matches!(file, StudyFile::Overview | StudyFile::ListItem);
         let is_whole = is_over && file.is_of_every_study() && !self.store().is_read_only();
         // A report has a megabyte of modules, so that it is computed where somebody asks for it.
-        let grids = match file {
-            StudyFile::Report => current_grid(&study),
-            _ => Vec::new(),
+        let predictions = match file {
+            StudyFile::Report => carried(&study, decisions),
+            _ => ReportPredictions::default(),
         };
         let computed = match () {
             () if is_whole => files(&study),
             () if is_of_list => overview_files(&report::overview::overview(&study)),
             () => {
-                let text = report::study_file::file(&study, &grids, file);
+                let text = report::study_file::file(&study, &predictions, file);
                 let text = text.ok_or_else(|| ServiceError::not_found("result of calibration", row.id))?;
                 [(name.clone(), text)].into()
             }
         };
         let text = computed[&name].clone();
-        if is_over || is_of_list {
+        if is_kept && (is_over || is_of_list) {
             self.keep(row.study, stamp, computed).await?;
         }
         Ok(text)
@@ -139,6 +149,54 @@ impl Service {
         Ok(text)
     }
 
+    /// Returns the decision that was asked for last, or that the job states, as JSON: `null` where there is none.
+    ///
+    /// # Errors
+    /// The same as of [`Service::decide`].
+    pub async fn decision(&self, id: i64) -> Result<String, ServiceError> {
+        let row = self.calibration_row(id).await?;
+        check_finished(&row)?;
+        let (stamp, _) = self.stamped_members(row.study).await?;
+        if let Some(text) = self.results.text(row.study, &decision_name(id), &stamp).await? {
+            return Ok(text);
+        }
+        let answer = match Job::parse(FILES[0], &row.job.toml)?.decision {
+            Some(_) => Some(self.decide(id, NewDecision::default()).await?),
+            None => None,
+        };
+        Ok(serde_json::to_string(&answer).expect("results have a JSON form"))
+    }
+
+    /// Keeps a decision in the place of that which was asked for before.
+    pub(super) async fn keep_decision(
+        &self,
+        row: &CalibrationRow,
+        stamp: Stamp,
+        answer: &DecisionAnswer,
+    ) -> Result<(), ServiceError> {
+        let text = serde_json::to_string(answer).expect("results have a JSON form");
+        self.keep(row.study, stamp, [(decision_name(row.id), text)].into())
+            .await
+    }
+
+    /// Returns the decisions that are kept of the calibrations of a study.
+    async fn kept_decisions(
+        &self,
+        rows: &[CalibrationRow],
+        stamp: &Stamp,
+    ) -> Result<Vec<DecisionAnswer>, ServiceError> {
+        let mut decisions = Vec::new();
+        for row in rows {
+            let text = self
+                .results
+                .text(row.study, &decision_name(row.id), stamp)
+                .await?;
+            // A form that this program does not know is computed again where it is asked for.
+            decisions.extend(text.and_then(|text| serde_json::from_str(&text).ok()));
+        }
+        Ok(decisions)
+    }
+
     async fn keep(
         &self,
         study: i64,
@@ -160,6 +218,19 @@ impl Service {
 /// Returns the part of a stamp of this program that the members of a study determine.
 pub(super) fn members_stamp(members: impl Iterator<Item = (i64, CalibrationState)>) -> String {
     store::members_stamp(BUILD, members)
+}
+
+/// Returns what a report carries of conditions that nobody measured: the current model's grid, the decisions that are kept, and that of the
+/// current model's job.
+fn carried(study: &Study, mut decisions: Vec<DecisionAnswer>) -> ReportPredictions {
+    let current = study.current().map(|current| current.row.id);
+    if !decisions.iter().any(|kept| Some(kept.calibration) == current) {
+        decisions.extend(current_decision(study));
+    }
+    ReportPredictions {
+        grids: current_grid(study),
+        decisions,
+    }
 }
 
 fn are_over(rows: &[CalibrationRow]) -> bool {

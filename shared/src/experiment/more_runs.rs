@@ -12,13 +12,7 @@ impl Experiment {
     /// [`FileError`] names the line of a new row that is malformed or whose run is in the experiment already.
     pub fn with_runs(name: &str, files: &FileSet, csv: &str) -> Result<(FileSet, usize), FileError> {
         let before = Experiment::parse(name, files)?;
-        let file = settings::parse(name, &files.toml)?.runs;
-        let file = file.ok_or_else(|| {
-            FileError::whole(
-                name,
-                "runs = \"runs.csv\" is missing: the experiment has no runs to append to",
-            )
-        })?;
+        let file = Experiment::runs_file(name, files)?;
         let fail = |e: csv::Error| FileError::whole(&file, e.to_string());
         let with = |text: String| {
             let mut all = files.clone();
@@ -58,6 +52,16 @@ impl Experiment {
         let enlarged = with(written(&header, rows).map_err(fail)?);
         let runs = Experiment::parse(name, &enlarged)?.runs.len();
         Ok((enlarged, runs))
+    }
+
+    /// Returns the name of the file with the runs of an experiment.
+    ///
+    /// # Errors
+    /// [`FileError`] if the experiment has no runs.
+    pub fn runs_file(name: &str, files: &FileSet) -> Result<String, FileError> {
+        let missing = "runs = \"runs.csv\" is missing: the experiment has no runs to append to";
+        let file = settings::parse(name, &files.toml)?.runs;
+        file.ok_or_else(|| FileError::whole(name, missing))
     }
 }
 

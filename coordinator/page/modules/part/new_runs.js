@@ -1,4 +1,4 @@
-// Measured runs are typed in here, the proposed ones first; the study is calibrated again with them.
+// Measured runs are typed in here, the proposed ones first; the study is calibrated again with them, or a campaign goes on with them.
 
 import { d3 } from "../chart/library.js";
 import { table } from "../chart/download.js";
@@ -18,8 +18,11 @@ const COLUMNS = /** @type {Record<string, string>} */ ({ drawbar_pull: "drawbar_
 
 /** @typedef {{ run: string, rig: string, slip: string, load: string, speed: string, angle: string, values: Record<string, string> }} NewRun */
 
-/** @param {{ study: any, model: any, record: any, comparison: any, reload?: () => void }} properties */
-export function NewRuns({ study, model, record, comparison, reload }) {
+/**
+ * @param {{ study: any, model: any, record: { next_runs: any[] }, comparison: any, reload?: () => void, follow?: (rows: Record<string, any>[]) => Promise<void>, further?: number }} properties
+ *   follow: takes the rows in place of a calibration. further: the number of runs that the study does not have and whose names are taken
+ */
+export function NewRuns({ study, model, record, comparison, reload, follow, further = 0 }) {
   const { answer: experiment, error } = useAnswer(path.experiment(study.experiment));
   const [rows, setRows] = useState(/** @type {NewRun[] | null} */ (null));
   const [failure, setFailure] = useState(/** @type {any} */ (null));
@@ -27,7 +30,7 @@ export function NewRuns({ study, model, record, comparison, reload }) {
   const channels = CHANNELS.filter((c) => comparison.rows.some((/** @type {any} */ r) => r.channel === c));
   const rigs = rigsOf(experiment);
   const isAngled = new Set(comparison.rows.map((/** @type {any} */ r) => r.slip_angle_deg)).size > 1;
-  const count = new Set(comparison.rows.map((/** @type {any} */ r) => r.run)).size;
+  const count = new Set(comparison.rows.map((/** @type {any} */ r) => r.run)).size + further;
   const blank = (/** @type {number} */ k) => ({ run: `next-${count + k + 1}`, rig: "", slip: "", load: "", speed: "", angle: "", values: {} });
   const proposed = record.next_runs.map((/** @type {any} */ r, /** @type {number} */ k) => (
     { ...blank(k), slip: typed(r.slip, slipUnit), load: typed(r.wheel_load_n, shown("N")), speed: typed(r.sled_speed_m_s, shown("m/s")) }));
@@ -54,10 +57,14 @@ export function NewRuns({ study, model, record, comparison, reload }) {
     setFailure(null);
     setBusy(true);
     try {
-      // To the model that is shown: the runs that its search proposes tell its explanations apart.
-      const added = await addRuns(study.id, table(filled.map(lineOf)), model.id);
-      reload?.();
-      location.hash = address(["studies", added.study, "live"]);
+      const lines = filled.map(lineOf);
+      if (follow) await follow(lines);
+      else {
+        // To the model that is shown: the runs that its search proposes tell its explanations apart.
+        const added = await addRuns(study.id, table(lines), model.id);
+        reload?.();
+        location.hash = address(["studies", added.study, "live"]);
+      }
     } catch (error) {
       setFailure(error);
     }
@@ -66,7 +73,7 @@ export function NewRuns({ study, model, record, comparison, reload }) {
   const field = (/** @type {string} */ label, /** @type {string} */ value, /** @type {(text: string) => void} */ change, isNumber = true) =>
     html`<td><input aria-label=${label} inputmode=${isNumber ? "decimal" : "text"} aria-invalid=${isNumber && value !== "" && numberOf(value) === null} size="7" value=${value} onInput=${(/** @type {any} */ e) => change(e.target.value)} /></td>`;
   return html`
-    <h3>Add runs that you have made</h3>
+    <h3>${follow ? t`The next run that you have made` : t`Add runs that you have made`}</h3>
     <form onSubmit=${send} class="new-runs">
       <div class="scroll" tabindex="0" role="region" aria-label="New runs"><table>
         <thead><tr><th scope="col">run</th>${rigs.length > 1 && html`<th scope="col">wheel</th>`}<th scope="col">${titled(t`slip`, slipUnit.unit)}</th><th scope="col">${titled(t`load`, shown("N").unit)}</th><th scope="col">${titled(t`speed`, shown("m/s").unit)}</th>${isAngled && html`<th scope="col">slip angle °</th>`}
@@ -84,7 +91,7 @@ export function NewRuns({ study, model, record, comparison, reload }) {
       </table></div>
       <div class="actions">
         <button type="button" onClick=${() => setRows([...now, blank(now.length)])}>One more run</button>
-        <button class="main" type="submit" disabled=${filled.length === 0 || isBusy || rigs.length === 0}>${filled.length === 0 ? t`Add runs: type what was measured` : filled.length === 1 ? t`Add 1 run and calibrate again` : t`Add ${filled.length} runs and calibrate again`}</button>
+        <button class="main" type="submit" disabled=${filled.length === 0 || isBusy || rigs.length === 0}>${isBusy ? t`is being computed …` : filled.length === 0 ? t`Add runs: type what was measured` : follow ? t`Follow with ${filled.length} more` : filled.length === 1 ? t`Add 1 run and calibrate again` : t`Add ${filled.length} runs and calibrate again`}</button>
       </div>
       <${Failure} error=${failure ?? error} />
     </form>`;

@@ -22,6 +22,8 @@ export const path = {
   provenance: (/** @type {number} */ id) => `${calibration(id)}/provenance`,
   responseSurface: (/** @type {number} */ id) => `${calibration(id)}/response-surface`,
   predictionGrid: (/** @type {number} */ id) => `${calibration(id)}/prediction-grid`,
+  decision: (/** @type {number} */ id) => `${calibration(id)}/decision`,
+  campaign: (/** @type {number} */ id) => `${calibration(id)}/follow`,
   job: (/** @type {number} */ id) => `${calibration(id)}/job`,
   histories: (/** @type {number} */ id) => `${calibration(id)}/histories`,
   discovery: (/** @type {number} */ id) => `${calibration(id)}/discovery`,
@@ -52,6 +54,12 @@ export const reportOf = async (/** @type {number} */ id) => (await request("GET"
 
 /** @returns {Promise<Schemas["Prediction"]>} */
 export const predict = (/** @type {number} */ id, /** @type {Partial<Schemas["NewPrediction"]>} */ asked) => post(`${calibration(id)}/predict`, asked);
+
+/** @returns {Promise<Schemas["DecisionAnswer"]>} */
+export const decide = (/** @type {number} */ id, /** @type {string} */ file) => post(`${calibration(id)}/decide`, { file });
+
+/** @returns {Promise<Schemas["Followed"]>} */
+export const followRuns = (/** @type {number} */ id, /** @type {string} */ runs) => post(path.campaign(id), { runs });
 
 /** @returns {Promise<Schemas["JobCheck"]>} */
 export const check = (/** @type {Schemas["NewCheck"]} */ job) => post("/v1/check", job);

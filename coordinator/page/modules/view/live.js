@@ -3,6 +3,7 @@
 import { html, useEffect, useRef, useState } from "../html.js";
 import { t, translated } from "../language/language.js";
 import { Controls } from "../part/controls.js";
+import { Later } from "../part/later.js";
 import { Leaders } from "../part/leaders.js";
 import { Failure } from "../part/message.js";
 import { Particles, RecordedParticles } from "../part/particles.js";
@@ -18,6 +19,8 @@ import { address, replace } from "../route.js";
 import { words } from "../words/quantity.js";
 import { toGo } from "../words/time_to_go.js";
 import { progressWords } from "../words/state.js";
+
+const campaign = () => import("../part/campaign.js").then((module) => module.Campaign);
 
 /** How often the workers are asked for [ms]. */
 const FARM_MS = 2000;
@@ -36,6 +39,8 @@ function memberOf(/** @type {any} */ study, /** @type {string | undefined} */ as
 export function Live({ study, model, query, reload }) {
   const member = memberOf(study, query.member ?? (isReport ? String(model?.id) : undefined));
   if (!member) return html`<p class="empty">This study has no calibration.</p>`;
+  // A search and a fit have no posterior that further runs could change.
+  const followable = member.kind === "sample" && member.state === "finished" ? member : model;
   const go = (/** @type {number} */ id) => replace(address(["studies", study.id, "live"], { member: id }));
   const names = study.members.map((/** @type {any} */ m) => [
     isReport ? m.name : html`<button type="button" aria-pressed=${m.id === member.id} onClick=${() => go(m.id)}>${m.name}</button>`,
@@ -48,6 +53,7 @@ export function Live({ study, model, query, reload }) {
     <${Member} key=${member.id} member=${member} reload=${reload} />
     ${!isReport && isAddition(study, member) && member.kind !== "search" && html`<p><${TakeBack} study=${study} id=${member.id} reload=${reload} /></p>`}
     ${!isReport && !FINAL.includes(study.state) && html`<${Farm} />`}
+    ${!isReport && FINAL.includes(study.state) && followable && html`<${Later} key=${`campaign ${followable.id}`} title=${t`The campaign`} load=${campaign} study=${study} model=${followable} reload=${reload} />`}
     <h2>Everything in this study</h2>
     <${Table} label="Calibrations and searches of the study" head=${[t`name`, t`what`, t`state`, t`message`]} rows=${names} />`;
 }

@@ -15,6 +15,7 @@ export const VIEWS = [
   { name: "effects", title: t`Missing effect`, load: () => import("./missing_effect.js").then((module) => module.MissingEffect) },
   { name: "posterior", title: t`Posterior`, load: () => import("./posterior.js").then((module) => module.Posterior) },
   { name: "predict", title: t`Predict`, load: () => import("./predict.js").then((module) => module.Predict) },
+  { name: "decide", title: t`Decide`, load: () => import("./decide.js").then((module) => module.Decide) },
   { name: "errors", title: t`Error falls`, load: () => import("./errors.js").then((module) => module.Errors) },
   { name: "trust", title: t`How far to trust it`, load: () => import("./trust.js").then((module) => module.Trust) },
   { name: "live", title: t`Live`, load: () => import("./live.js").then((module) => module.Live) },

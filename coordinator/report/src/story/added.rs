@@ -351,7 +351,7 @@ mod tests {
         let printed = terminal::story(&story, std::path::Path::new("out/sand"), terminal::WIDTH);
         let printed = printed.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(printed.contains(RIVAL) && printed.contains(RUN), "{printed}");
-        assert!(document::document(&study, &[]).contains(RIVAL));
+        assert!(document::document(&study, &document::ReportPredictions::default()).contains(RIVAL));
     }
 
     #[test]

@@ -127,6 +127,7 @@ pub fn summary(study: &Study) -> StudySummary {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::document::ReportPredictions;
     use crate::fixture;
 
     #[test]
@@ -166,7 +167,14 @@ mod tests {
             other_models: vec![other],
             ..fixture::calibration().into()
         };
-        assert!(crate::study_file::file(&study, &[], crate::StudyFile::Figures(2)).is_some());
+        assert!(
+            crate::study_file::file(
+                &study,
+                &ReportPredictions::default(),
+                crate::StudyFile::Figures(2)
+            )
+            .is_some()
+        );
         assert_eq!(summary(&study).models, study.model_comparison());
     }
 }
