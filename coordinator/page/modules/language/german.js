@@ -1,8 +1,10 @@
 // The German catalogue.
 
 import { CALCULATOR } from "./german_calculator.js";
+import { EFFECTS } from "./german_effects.js";
+import { PARAMETERS } from "./german_parameters.js";
 import { SENTENCES } from "./german_sentences.js";
 import { WORDS } from "./german_words.js";
 
 /** @type {Record<string, string>} texts by their English form; `{0}` stands for the first part that varies */
-export const GERMAN = { ...WORDS, ...SENTENCES, ...CALCULATOR };
+export const GERMAN = { ...WORDS, ...SENTENCES, ...CALCULATOR, ...EFFECTS, ...PARAMETERS };
