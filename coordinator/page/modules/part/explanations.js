@@ -40,7 +40,7 @@ export function Explanations({ record, unchanged, ghost, kept, show, keep, add, 
   return html`
     <div class="scroll" tabindex="0" role="region" aria-label="Explanations">
       <table class="explanations">
-        <thead><tr><th scope="col">explanation</th><th scope="col">probability</th><th scope="col" class="number">nats</th><th scope="col">strength</th><th scope="col"></th></tr></thead>
+        <thead><tr><th scope="col">explanation</th><th scope="col">probability</th><th scope="col" class="number">nats</th><th scope="col">strength</th><td></td></tr></thead>
         <tbody>${effects.map((/** @type {any} */ effect) => html`
           <tr key=${effect.name} class=${`${effect.name === ghost ? "shown" : ""} ${effect.in_credible_set ? "credible" : ""}`}
               onMouseEnter=${() => show(effect.name)} onMouseLeave=${() => show(null)}>
