@@ -5,6 +5,7 @@ import { readFile } from "node:fs/promises";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 
+import { GERMAN } from "../../coordinator/page/modules/language/german.js";
 import { findings, open, shot, sideways, studyOf } from "./browser.js";
 import { Service } from "./service.js";
 
@@ -124,6 +125,37 @@ test("the result is read in German, and printed on two pages", async () => {
     assert.deepEqual(report.faults, []);
   } finally {
     await report.close();
+  }
+});
+
+/** English texts of the page with a German form of their own; a part that varies stands for any words. */
+const ENGLISH = Object.entries(GERMAN).filter(([english, german]) => english !== german && /\p{L}{4}/u.test(english.replace(/\{\d\}/g, "")))
+  .map(([english]) => new RegExp(`^${english.replace(/[.*+?^$()|[\]\\]/g, "\\$&").replace(/\{\d\}/g, ".+?").replace(/[{}]/g, "\\$&")}$`, "u"));
+/** Sentences of the service, which stay English, and names as they are written in files. */
+const OF_SERVICE = /^\w+_\w+|\.$|^it changes nothing at|^\d+ fitted runs with/;
+
+/** Texts and labels that a person sees or hears, with everything unfolded. */
+const textsOfPage = () => page.evaluate(() => {
+  for (const details of document.querySelectorAll("details")) details.open = true;
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  const texts = [];
+  while (walker.nextNode()) if (!walker.currentNode.parentElement.closest("pre, code, script, style, [lang]:not(html)")) texts.push(walker.currentNode.data);
+  for (const element of document.querySelectorAll("[aria-label], [title], [placeholder]")) {
+    for (const name of ["aria-label", "title", "placeholder"]) texts.push(element.getAttribute(name) ?? "");
+  }
+  return [...new Set(texts.map((text) => text.trim().replace(/\s+/g, " ")).filter((text) => /\p{L}{4}/u.test(text)))];
+});
+
+test("no view shows an English text that the catalogue has in German", async () => {
+  const study = studyOf(page);
+  const places = ["story", "compare", "failures", "effects", "posterior", "predict", "errors", "trust", "live"].map((view) => `studies/${study}/${view}`);
+  for (const place of ["", "new", ...places]) {
+    await page.goto(`${service.url}/#/${place}`);
+    await page.locator("main h1, main h2, section.view").first().waitFor();
+    await page.locator('[aria-busy="true"]').first().waitFor({ state: "detached" });
+    const texts = await textsOfPage();
+    const english = texts.filter((text) => !OF_SERVICE.test(text) && ENGLISH.some((pattern) => pattern.test(text)));
+    assert.deepEqual(english, [], place);
   }
 });
 

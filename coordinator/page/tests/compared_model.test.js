@@ -16,7 +16,7 @@ const cell = (/** @type {any} */ table, /** @type {number} */ row, /** @type {st
 
 test("the most probable model comes first, with its evidence, error and what is decided", () => {
   const { head, rows } = comparedModels(comparison());
-  assert.deepEqual(head, ["model", "ln evidence", "probability", "p of chi-square", "pull N", "sinkage mm", "noise sds", "answer"]);
+  assert.deepEqual(head, ["model", "ln evidence", "probability", "p of chi-square", "pull [N]", "sinkage [mm]", "noise sds", "answer"]);
   assert.deepEqual(rows, [
     ["model 2", "47.204 ± 0.020", "> 0.999", "0.88", "2.50", "0.77", "0.85", "chosen; predicts best"],
     ["model 1", "−196.646 ± 0.011", "< 0.001", "< 0.001", "2.50", "0.77", "4.49", "244 nats less"],

@@ -3,7 +3,10 @@ import { readFile, readdir } from "node:fs/promises";
 import { test } from "node:test";
 
 import { GERMAN } from "../modules/language/german.js";
+import { EFFECTS } from "../modules/language/german_effects.js";
+import { PARAMETERS } from "../modules/language/german_parameters.js";
 import { inTemplates, textsOf } from "../modules/language/language.js";
+import { parameterName } from "../modules/words/quantity.js";
 
 const MODULES = new URL("../modules/", import.meta.url);
 
@@ -98,8 +101,41 @@ test("every text of the page is in the German catalogue, and the catalogue has n
   assert.ok(all.size > 300, `${all.size} texts`);
   const missing = [...all.keys()].filter((text) => !(text in GERMAN) && !SAME.test(text));
   assert.deepEqual(missing.map((text) => `${all.get(text)}: ${text}`), []);
-  const unused = Object.keys(GERMAN).filter((text) => !all.has(text) && !OF_SERVICE.includes(text));
+  const unused = Object.keys(GERMAN).filter((text) => !all.has(text) && !OF_SERVICE.includes(text) && !(text in EFFECTS) && !(text in PARAMETERS));
   assert.deepEqual(unused, []);
+});
+
+const ROOT = new URL("../../../", import.meta.url);
+const CATALOGUE = new URL("shared/formula/catalogue/", ROOT);
+
+/** The texts of the effect files of the service. */
+const effectFiles = async () => Promise.all((await readdir(CATALOGUE)).map((name) => readFile(new URL(name, CATALOGUE), "utf8")));
+
+test("every parameter that has a word for a name has one in German, and nothing else", async () => {
+  const ofEffects = (await effectFiles()).flatMap((text) => [...text.matchAll(/^\[parameters\.(\w+)\]\nunit = "(.+)"$/gm)]);
+  const source = await readFile(new URL("shared/src/parameters.rs", ROOT), "utf8");
+  const ofModels = [...source.matchAll(/(?:base|inferred)\(\s*"(\w+)",\s*"([^"]+)"/g)];
+  const names = new Set([...ofEffects, ...ofModels].map(([, name, unit]) => parameterName(name, unit)));
+  // Symbols are the same in every language.
+  const isSymbol = (/** @type {string} */ name) => /^(log10 )?[a-z]+( [a-z]{1,3})?\d?$/.test(name) && !(name in PARAMETERS);
+  const symbols = [...names].filter(isSymbol);
+  assert.deepEqual(symbols.sort(), ["c1", "c2", "k c", "k phi", "kappa", "log10 p ref", "n", "xi n"]);
+  assert.deepEqual([...names].filter((name) => !isSymbol(name) && !(name in PARAMETERS)), []);
+  assert.deepEqual(Object.keys(PARAMETERS).filter((name) => !names.has(name)), []);
+});
+
+test("what every effect of the service does is said in German, and nothing else", async () => {
+  const catalogue = await effectFiles();
+  const settings = await readFile(new URL("coordinator/job/src/model_switch.rs", ROOT), "utf8");
+  const parameters = await readFile(new URL("coordinator/job/src/plain_parameter.rs", ROOT), "utf8");
+  const summaries = [
+    ...catalogue.flatMap((text) => [...text.matchAll(/^summary = "(.+)"$/gm)]),
+    ...settings.matchAll(/summary: "(.+)"/g),
+    ...parameters.matchAll(/"(?:\{ .+ \})",\s+"(.+)",/g),
+  ].map(([, summary]) => summary);
+  assert.ok(summaries.length > 60, `${summaries.length} effects`);
+  assert.deepEqual(summaries.filter((summary) => !(summary in EFFECTS)), []);
+  assert.deepEqual(Object.keys(EFFECTS).filter((text) => !summaries.includes(text) && !text.startsWith("runs ")), []);
 });
 
 test("a translation has the parts of its text", () => {

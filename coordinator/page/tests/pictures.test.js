@@ -6,7 +6,7 @@ import vm from "node:vm";
 // The vendored libraries are scripts that leave their names behind, as in the document.
 vm.runInThisContext(readFileSync(new URL("../vendor/d3.js", import.meta.url), "utf8"));
 const { natsWords, shownNats } = await import("../modules/chart/information_map.js");
-const { moved, nearest, outline } = await import("../modules/chart/merged.js");
+const { marksLike, moved, nearest, outline } = await import("../modules/chart/merged.js");
 const { scaleOf, ticksOf } = await import("../modules/chart/pairs.js");
 const { tickWords } = await import("../modules/words/quantity.js");
 
@@ -53,6 +53,18 @@ test("an element of a mark becomes a part of one path, at its place", () => {
   const symbol = "M-1,-1h2v2h-2Z";
   assert.deepEqual(place(outline(element("path", { transform: "translate(10.5,-3)", d: symbol }))), [10.5, -3, "M9.5,-4h2v2h-2Z"]);
   assert.equal(moved("M2,0A2,2,0,1,1,-2,0L1e-3,4Z", 10, 20), "M12,20A2,2,0,1,1,8,20L10.001,24Z");
+});
+
+test("the marks of a group have the form of the first one, and places and colours of their own", () => {
+  const element = (/** @type {string} */ tagName, /** @type {Record<string, string>} */ attributes) => ({ tagName, getAttribute: (/** @type {string} */ name) => attributes[name] ?? null });
+  const runOf = (/** @type {number} */ place) => `r${place}`;
+  const dots = marksLike(element("circle", { cx: "20", cy: "7", r: "2" }), [1, 2], { x: [0, 20, 30], y: [0, 7, 5], fill: ["", "red", "blue"] }, runOf);
+  assert.deepEqual(dots.map(({ run, x, y, fill, stroke, d }) => [run, x, y, fill, stroke, d]), [
+    ["r1", 20, 7, "red", null, "M18,7a2,2 0 1,0 4,0a2,2 0 1,0 -4,0"],
+    ["r2", 30, 5, "blue", null, "M28,5a2,2 0 1,0 4,0a2,2 0 1,0 -4,0"],
+  ]);
+  const lines = marksLike(element("line", { x1: "1", y1: "2", x2: "1", y2: "8" }), [0, 1], { x: [1, 3], y1: [2, 4], y2: [8, 6] }, runOf);
+  assert.deepEqual(lines.map(({ y, d }) => [y, d]), [[5, "M1,2V8"], [5, "M3,4V6"]]);
 });
 
 test("a pointer means the nearest of merged marks, and none far away", () => {

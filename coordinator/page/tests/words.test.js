@@ -2,8 +2,10 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { table } from "../modules/chart/download.js";
+import { separatedWords } from "../modules/chart/information_map.js";
 import { groups } from "../modules/words/group.js";
-import { flagWords } from "../modules/part/flags.js";
+import { byWeight, flagWords } from "../modules/part/flags.js";
+import { benchTest } from "../modules/words/bench_test.js";
 import { clauses } from "../modules/words/clauses.js";
 import { levels, levelWords } from "../modules/words/level.js";
 import { measuredQuantities, statementOf } from "../modules/words/predicted_quantity.js";
@@ -88,6 +90,7 @@ test("the ends of a level have the digits that tell them apart", () => {
   assert.equal(levelWords({ low: 21.3, high: 26.6 }, "N"), "21 to 27 N");
   assert.equal(levelWords({ low: 135.8, high: 144.2 }, "N"), "136 to 144 N");
   assert.equal(levelWords({ low: 0.0199, high: 0.01991 }, "mm/s", 1000), "19.9 mm/s");
+  assert.equal(levelWords({ low: 0.007, high: 0.0071 }, "mm/s", 1000), "7.05 mm/s");
 });
 
 test("runs are grouped by the speed that the rig holds", () => {
@@ -113,6 +116,7 @@ test("where the wheel load has one level, colours tell the condition that has mo
 test("numbers and units of the service are written as people write them", () => {
   assert.equal(raised("1500 kg/m^3 (p = 7e-7 among 9, p < 1e-12): by -0.5 and -2"), "1500 kg/m³ (p = 7·10⁻⁷ among 9, p < 10⁻¹²): by −0.5 and −2");
   assert.equal(raised("sinkage_m = 0.062220742972120435 m and 0.0622"), "sinkage_m = 0.06222 m and 0.0622");
+  assert.equal(raised("1.2e-7 m, 0.000000120012345 m, 123456.123456789 Pa, 0.0001234567891"), "1.2·10⁻⁷ m, 1.2·10⁻⁷ m, 123456 Pa, 0.0001235");
   // Names and dates stay as they are.
   assert.equal(raised("next-41 of 2026-11-27, one-2e4b"), "next-41 of 2026-11-27, one-2e4b");
 });
@@ -125,6 +129,22 @@ test("a sentence is taken apart at its semicolons, but not within brackets", () 
 test("a flag does not repeat the name of the model whose flags are listed", () => {
   assert.equal(flagWords("cmu+side_bulldozing: the data pull n", "cmu+side_bulldozing"), "the data pull n");
   assert.equal(flagWords("cmu: the data pull n", undefined), "cmu: the data pull n");
+});
+
+test("the weightiest flags stand first", () => {
+  const flags = ["no_information", "chi2", "trend", "not_equilibrated", "of a later version"].map((kind) => ({ kind }));
+  assert.deepEqual(byWeight(flags).map(({ kind }) => kind), ["not_equilibrated", "chi2", "trend", "no_information", "of a later version"]);
+});
+
+test("a run names three of the explanations that it separates", () => {
+  assert.equal(separatedWords(["none", "a", "b"]), "nothing missing, a, b");
+  assert.equal(separatedWords(["a", "b", "c", "d", "e"]), "a, b, c and 2 more");
+});
+
+test("a test without a rolling wheel is told apart from the line that states its result", () => {
+  assert.deepEqual(benchTest("tare run: move the sled. Its result goes under [priors]: \"a.b\" = { normal = [VALUE, SD] }"),
+    { what: "tare run: move the sled.", place: "[priors]: \"a.b\" = { normal = [VALUE, SD] }" });
+  assert.deepEqual(benchTest("plate test"), { what: "plate test.", place: null });
 });
 
 test("against the load, runs of one slip and speed are a line, and the colour tells the slip", () => {

@@ -108,7 +108,10 @@ function picture({ width, layers, measured, found, axis, quantity, channel, movi
       ...marks,
       ...dots(measured.filter((r) => r.use !== "holdout"), (/** @type {string} */ c) => ({ fill: c, ...edge })),
       ...dots(measured.filter((r) => r.use === "holdout"), (/** @type {string} */ c) => ({ fill: "var(--paper)", stroke: c, strokeWidth: 1.8 })),
-      Plot.tip(measured, Plot.pointer({ x, y: value("measured"), title: tip, maxRadius: 14, fill: "var(--panel)", stroke: "var(--rule)" })),
+      // The words are made of the run that is pointed at alone.
+      Plot.tip(measured, Plot.pointer({
+        x, y: value("measured"), title: (/** @type {any} */ r) => r, format: { title: tip }, maxRadius: 14, fill: "var(--panel)", stroke: "var(--rule)",
+      })),
     ],
   });
 }

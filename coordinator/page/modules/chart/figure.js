@@ -48,12 +48,11 @@ export function Figure({ title, name, deps, draw, rows, note, legend, onDrawn })
     return onDrawn?.(plot) ?? undefined;
   }, [width, ...deps]);
   const figure = () => /** @type {HTMLElement} */ (place.current?.closest("figure"));
-  const saved = (/** @type {"svg" | "csv"} */ kind, /** @type {typeof import("./download.js")} */ { csv, save, svg }) =>
-    save(`${name}.${kind}`, kind === "svg" ? svg(figure()) : csv(rows?.() ?? []));
-  const savePng = async () => {
+  const saveAs = async (/** @type {"svg" | "png" | "csv"} */ kind) => {
     try {
-      const { png, save } = await files();
-      save(`${name}.png`, await png(figure()));
+      const { csv, png, save, svg } = await files();
+      const content = { svg: () => svg(figure()), png: () => png(figure()), csv: () => csv(rows?.() ?? []) };
+      save(`${name}.${kind}`, await content[kind]());
     } catch (error) {
       setFailure(t`this picture cannot be saved: ${/** @type {Error} */ (error).message}`);
     }
@@ -65,9 +64,9 @@ export function Figure({ title, name, deps, draw, rows, note, legend, onDrawn })
       ${failure && html`<p class="error">${failure}</p>`}
       ${legend && html`<div class="legend">${legend}</div>`}
       <div class="downloads" role="toolbar" aria-label=${t`download: ${title}`} onKeyDown=${roam}>
-        <button type="button" onClick=${async () => saved("svg", await files())}>SVG</button>
-        <button type="button" tabindex="-1" onClick=${savePng}>PNG</button>
-        ${rows && html`<button type="button" tabindex="-1" onClick=${async () => saved("csv", await files())}>CSV</button>`}
+        <button type="button" onClick=${() => saveAs("svg")}>SVG</button>
+        <button type="button" tabindex="-1" onClick=${() => saveAs("png")}>PNG</button>
+        ${rows && html`<button type="button" tabindex="-1" onClick=${() => saveAs("csv")}>CSV</button>`}
       </div>
     </figure>`;
 }

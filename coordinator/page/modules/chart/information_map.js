@@ -50,8 +50,18 @@ export function InformationMap({ record, name }) {
 const isSame = (/** @type {any} */ a, /** @type {any} */ b) =>
   a.slip === b.slip && a.wheel_load_n === b.wheel_load_n && a.sled_speed_m_s === b.sled_speed_m_s;
 
+/** Number of explanations that a run names. */
+const NAMED = 3;
+
+/** The explanations that a run tells apart: a few by name, the others counted. */
+export function separatedWords(/** @type {string[]} */ separates) {
+  const names = separates.map((name) => (name === "none" ? t`nothing missing` : name));
+  const few = names.slice(0, NAMED).join(", ");
+  return names.length > NAMED ? t`${few} and ${names.length - NAMED} more` : few;
+}
+
 function ProposedRuns(/** @type {{ record: any }} */ { record }) {
   if (record.next_runs.length === 0) return null;
   return html`<ol>${record.next_runs.map((/** @type {any} */ r, /** @type {number} */ k) => html`
-    <li>${conditionWords(r)} (${t`rim ${speedWords(rimSpeed(r))}`}): ${k === 0 ? t`tells ${digits(r.information_nats, 2)} nats` : t`adds ${digits(r.information_nats, 2)} nats`}; ${t`it separates ${r.separates.join(", ").replace("none", t`nothing missing`)}`}</li>`)}</ol>`;
+    <li>${conditionWords(r)} (${t`rim ${speedWords(rimSpeed(r))}`}): ${k === 0 ? t`tells ${digits(r.information_nats, 2)} nats` : t`adds ${digits(r.information_nats, 2)} nats`}; ${t`it separates ${separatedWords(r.separates)}`}</li>`)}</ol>`;
 }

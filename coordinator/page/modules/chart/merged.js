@@ -6,7 +6,10 @@ export const MANY = 300;
 const LEAST_REACH = 6;
 const SVG = "http://www.w3.org/2000/svg";
 
-/** @typedef {{ run: string, x: number, y: number, reach: number, d: string }} Mark its middle, and its outline in the picture */
+/**
+ * @typedef {{ run: string, x: number, y: number, reach: number, d: string, fill?: string | null, stroke?: string | null }} Mark
+ *   its middle, its outline in the picture, and its colours where the group has none
+ */
 /** @type {WeakMap<Element, Mark[]>} */
 const marksOf = new WeakMap();
 
@@ -41,8 +44,11 @@ let last = { d: "", parts: [] };
 /** The data of a symbol elsewhere: its absolute ends move, what follows them is relative. */
 export function moved(/** @type {string} */ d, /** @type {number} */ left, /** @type {number} */ top) {
   if (d !== last.d) last = { d, parts: partsOf(d) };
-  return last.parts.map(({ head, x, y }) => (Number.isNaN(x) ? head : `${head}${x + left},${y + top}`)).join("");
+  return last.parts.map(({ head, x, y }) => (Number.isNaN(x) ? head : `${head}${rounded(x + left)},${rounded(y + top)}`)).join("");
 }
+
+/** A place in the picture to a thousandth of a pixel, which keeps paths short. */
+const rounded = (/** @type {number} */ value) => Math.round(1000 * value) / 1000;
 
 /** The commands of a symbol: of each the text before its end point, and the end point; NaN where that is relative. */
 function partsOf(/** @type {string} */ d) {
@@ -55,50 +61,67 @@ function partsOf(/** @type {string} */ d) {
 }
 
 /**
- * Replaces the elements of a group by one path for each of their colours; on an event `light` with runs, those stand out.
- * @param {SVGGElement} group
- * @param {(element: any) => string | undefined} runOf
+ * The marks of a group by the element of the first one: their places and colours are those that the scales give.
+ * @param {{ tagName: string, getAttribute: (name: string) => string | null }} first
+ * @param {ArrayLike<number>} index of the data
+ * @param {Record<"x" | "y" | "y1" | "y2", number[] | undefined> & Record<"fill" | "stroke", string[] | undefined>} values
+ * @param {(place: number) => string} runOf
+ * @returns {Mark[]}
  */
-export function merge(group, runOf) {
+export function marksLike(first, index, { x = [], y, y1, y2, fill, stroke }, runOf) {
+  const pattern = outline(first);
+  const colours = (/** @type {number} */ k) => ({ run: runOf(k), fill: fill?.[k] ?? null, stroke: stroke?.[k] ?? null });
+  return Array.from(index, (k) => {
+    const left = x[k] - x[index[0]];
+    // The ends of a line differ from mark to mark.
+    if (y1 && y2) {
+      const line = { x: pattern.x + left, y: (y1[k] + y2[k]) / 2, reach: pattern.reach };
+      return { ...line, d: `M${rounded(line.x)},${rounded(y1[k])}V${rounded(y2[k])}`, ...colours(k) };
+    }
+    const top = y === undefined ? 0 : y[k] - y[index[0]];
+    return { x: pattern.x + left, y: pattern.y + top, reach: pattern.reach, d: moved(pattern.d, left, top), ...colours(k) };
+  });
+}
+
+/**
+ * Replaces the elements of a group by one path for each colour of its marks; on an event `light` with runs, those stand out.
+ * @param {SVGGElement} group
+ * @param {Mark[]} marks
+ */
+export function merge(group, marks) {
   /** @type {Map<string, { fill: string | null, stroke: string | null, d: string[] }>} */
   const paths = new Map();
-  /** @type {Mark[]} */
-  const marks = [];
-  for (const element of [...group.children]) {
-    const run = runOf(element);
-    if (run === undefined) continue;
-    const mark = { run, ...outline(element) };
-    marks.push(mark);
-    const [fill, stroke] = [element.getAttribute("fill"), element.getAttribute("stroke")];
-    const own = paths.get(`${fill} ${stroke}`) ?? { fill, stroke, d: [] };
-    own.d.push(mark.d);
-    paths.set(`${fill} ${stroke}`, own);
+  for (const mark of marks) {
+    const { fill = null, stroke = null } = mark;
+    const path = paths.get(`${fill} ${stroke}`) ?? { fill, stroke, d: [] };
+    path.d.push(mark.d);
+    paths.set(`${fill} ${stroke}`, path);
   }
-  group.replaceChildren(...[...paths.values()].map(({ fill, stroke, d }) => path(d, { fill, stroke })));
+  group.replaceChildren(...[...paths.values()].map(({ fill, stroke, d }) => pathElement(d, { fill, stroke })));
   group.classList.add("merged");
   marksOf.set(group, marks);
   group.addEventListener("light", (event) => {
     group.querySelector(".lit")?.remove();
     const runs = /** @type {CustomEvent<Set<string> | null>} */ (event).detail;
     const d = runs === null ? [] : marks.filter((mark) => runs.has(mark.run)).map((mark) => mark.d);
-    if (d.length > 0) group.append(path(d, { class: "lit" }));
+    if (d.length > 0) group.append(pathElement(d, { class: "lit" }));
   });
 }
 
-function path(/** @type {string[]} */ d, /** @type {Record<string, string | null>} */ attributes) {
-  const made = document.createElementNS(SVG, "path");
-  made.setAttribute("d", d.join(""));
-  for (const [name, value] of Object.entries(attributes)) if (value !== null) made.setAttribute(name, value);
-  return made;
+function pathElement(/** @type {string[]} */ d, /** @type {Record<string, string | null>} */ attributes) {
+  const element = document.createElementNS(SVG, "path");
+  element.setAttribute("d", d.join(""));
+  for (const [name, value] of Object.entries(attributes)) if (value !== null) element.setAttribute(name, value);
+  return element;
 }
 
 /** The run of the mark nearest to a place; undefined where none reaches it. */
 export function nearest(/** @type {Mark[]} */ marks, /** @type {number} */ x, /** @type {number} */ y) {
-  const found = marks.reduce((/** @type {{ run?: string, far: number }} */ best, mark) => {
-    const far = Math.hypot(mark.x - x, mark.y - y) - mark.reach;
-    return far < best.far ? { run: mark.run, far } : best;
-  }, { far: 0 });
-  return found.run;
+  const closest = marks.reduce((/** @type {{ run?: string, distance: number }} */ best, mark) => {
+    const distance = Math.hypot(mark.x - x, mark.y - y) - mark.reach;
+    return distance < best.distance ? { run: mark.run, distance } : best;
+  }, { distance: 0 });
+  return closest.run;
 }
 
 /** The run of the merged mark under a pointer. */

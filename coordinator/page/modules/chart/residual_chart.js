@@ -23,11 +23,13 @@ export function ResidualChart({ channel, rows, axis, trends, name }) {
   const x = (/** @type {any} */ r) => r[axis.key] * axis.scale;
   const y = (/** @type {any} */ r) => (r.measured - r.predicted) * quantity.scale;
   const wheels = [...new Set(rows.map((r) => r.wheel))];
-  const trend = trends.find((t) => t.channel === channel && t.against === AGAINST[axis.key]);
+  const trend = trends.find((one) => one.channel === channel && one.against === AGAINST[axis.key]);
   const isBeyond = trend && trend.p * trends.length < LEVEL;
   const mean = meanErrorSd(judged);
   const sd = mean === null ? null : mean * quantity.scale;
   const line = isBeyond ? trendLine(judged.filter((r) => r.use !== "holdout"), trend, x, y, quantity.scale) : [];
+  // The words are made of the run that is pointed at alone.
+  const tip = (/** @type {any} */ r) => `${t`run ${r.run}`}\n${minus(digits(y(r)))} ${quantity.unit}`;
   const draw = (/** @type {number} */ width) => Plot.plot({
     width, height: Math.max(220, Math.min(300, 0.5 * width)), marginTop: 26, marginLeft: 56, marginBottom: 40, insetLeft: 7, insetRight: 7, grid: true, style: STYLE,
     x: { label: titled(axis.title, axis.unit), labelArrow: "none", labelAnchor: "center", nice: true },
@@ -40,7 +42,7 @@ export function ResidualChart({ channel, rows, axis, trends, name }) {
         const own = judged.filter((r) => r.wheel === wheel && (r.use === "holdout") === isHeldOut);
         return Plot.dot(own, byRun(own, { x, y, r: 3.6, symbol: symbol(k), ...(isHeldOut ? { stroke: colour(k), fill: "var(--paper)", strokeWidth: 1.6 } : { fill: colour(k) }) }, isMany));
       })),
-      Plot.tip(judged, Plot.pointer({ x, y, title: (/** @type {any} */ r) => `run ${r.run}\n${minus(digits(y(r)))} ${quantity.unit}`, maxRadius: 12, fill: "var(--panel)", stroke: "var(--rule)" })),
+      Plot.tip(judged, Plot.pointer({ x, y, title: (/** @type {any} */ r) => r, format: { title: tip }, maxRadius: 12, fill: "var(--panel)", stroke: "var(--rule)" })),
     ],
   });
   const runsIn = (/** @type {number} */ from, /** @type {number} */ to) => judged.filter((r) => x(r) >= from && x(r) <= to).map((r) => r.run);

@@ -2,7 +2,7 @@
 
 import { t } from "../language/language.js";
 import { choose, point, toggle } from "../selection.js";
-import { merge, mergedRunAt } from "./merged.js";
+import { marksLike, merge, mergedRunAt } from "./merged.js";
 
 /** A shorter way of the pointer is a click [px]. */
 const LEAST_PX = 5;
@@ -18,11 +18,13 @@ export function byRun(data, options, isMany = false) {
   return {
     ...options,
     render(/** @type {any} */ index, /** @type {any} */ scales, /** @type {any} */ values, /** @type {any} */ dimensions, /** @type {any} */ context, /** @type {any} */ next) {
-      const group = next(index, scales, values, dimensions, context);
-      if (isMany && group) {
-        merge(group, (element) => data[element.__data__]?.run);
-        return group;
+      if (isMany && index.length > 0) {
+        // One element is the pattern of all: those of a mark differ by place and colour alone.
+        const merged = next(index.slice(0, 1), scales, values, dimensions, context);
+        merge(merged, marksLike(merged.firstElementChild, index, values, (place) => data[place].run));
+        return merged;
       }
+      const group = next(index, scales, values, dimensions, context);
       for (const element of group?.children ?? []) {
         const datum = data[element.__data__];
         if (datum) element.dataset.run = datum.run;

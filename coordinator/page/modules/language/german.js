@@ -2,8 +2,13 @@
 
 import { CALCULATOR } from "./german_calculator.js";
 import { CAMPAIGN } from "./german_campaign.js";
+import { EFFECTS } from "./german_effects.js";
+import { PARAMETERS } from "./german_parameters.js";
 import { SENTENCES } from "./german_sentences.js";
 import { WORDS } from "./german_words.js";
 
 /** @type {Record<string, string>} texts by their English form; `{0}` stands for the first part that varies */
+<<<<<<< HEAD
 export const GERMAN = { ...WORDS, ...SENTENCES, ...CALCULATOR, ...CAMPAIGN };
+=======
+export const GERMAN = { ...WORDS, ...SENTENCES, ...CALCULATOR, ...EFFECTS, ...PARAMETERS };

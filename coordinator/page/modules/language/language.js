@@ -29,8 +29,8 @@ export function t(texts, ...parts) {
   return (catalogue?.[english] ?? english).replace(/\{(\d)\}/g, (_, k) => String(parts[Number(k)]));
 }
 
-/** A word of the service, such as a state, where the catalogue has it. */
-export const translated = (/** @type {string} */ word) => catalogue?.[word] ?? word;
+/** A text of the service, such as a state or what an effect does, where the catalogue has it. */
+export const translated = (/** @type {string} */ text) => catalogue?.[text] ?? text;
 
 /** The place of a part that varies, within the text of a template. */
 const MARK = /\0(\d+)\0/g;

@@ -30,9 +30,10 @@ export function BeforeAfter({ study, model, channel }) {
   const colours = new Map(ledgerLines(study).map((line) => [line.id, line.colour]));
   const layers = ids.map((id) => ({ id, colour: ids.length === 1 ? null : colours.get(id) ?? "var(--series-0)", rows: answers[path.comparison(id)]?.rows ?? null }));
   if (layers.some((layer) => layer.rows === null)) return html`<p class="empty" aria-busy="true">Loading the picture …</p>`;
-  const own = layers.at(-1)?.rows.filter((/** @type {any} */ r) => r.channel === channel) ?? [];
-  if (own.length === 0) return null;
-  const { wheel, at, runs } = clearest(own, before === null ? own : layers[0].rows.filter((/** @type {any} */ r) => r.channel === channel));
+  const ofChannel = (/** @type {any[]} */ rows) => rows.filter((row) => row.channel === channel);
+  const now = ofChannel(layers.at(-1)?.rows ?? []);
+  if (now.length === 0) return null;
+  const { wheel, at, runs } = clearest(now, before === null ? now : ofChannel(layers[0].rows));
   const named = layers.map(({ id, colour, rows }) => ({
     name: modelName(study, study.members.find((/** @type {any} */ m) => m.id === id)), colour, rows: rows.filter((/** @type {any} */ r) => runs.has(r.run)),
   }));
@@ -52,18 +53,18 @@ export function clearest(now, before) {
   const square = (/** @type {any} */ row) => (row?.predicted === null || row?.predicted === undefined ? 0 : (row.measured - row.predicted) ** 2);
   const wheels = [...new Set(now.map((row) => row.wheel))];
   const places = wheels.flatMap((wheel) => {
-    const own = now.filter((row) => row.wheel === wheel);
-    const found = groups(own);
-    const name = PLACES[found.colourKey];
-    const levels = name ? found.colours : [null];
+    const ofWheel = now.filter((row) => row.wheel === wheel);
+    const grouped = groups(ofWheel);
+    const name = PLACES[grouped.colourKey];
+    const levels = name ? grouped.colours : [null];
     return levels.map((level, k) => {
-      const rows = level === null ? own : found.groups.filter((group) => group.colour === k).flatMap((group) => group.rows);
+      const rows = level === null ? ofWheel : grouped.groups.filter((group) => group.colour === k).flatMap((group) => group.rows);
       const gain = rows.reduce((sum, row) => sum + Math.abs(square(old.get(row.run)) - (now === before ? 0 : square(row))), 0) / rows.length;
       return { wheel: wheels.length > 1 ? wheel : null, at: name && level !== null && levels.length > 1 ? name(level) : null, rows, gain };
     });
   });
   const clear = places.filter(({ rows }) => new Set(rows.map((row) => row.slip)).size >= LEAST_SLIPS);
-  const best = clear.reduce((/** @type {typeof places[number] | null} */ most, place) => (most === null || place.gain > most.gain ? place : most), null);
+  const best = clear.toSorted((a, b) => b.gain - a.gain)[0];
   const { wheel, at, rows } = best ?? { wheel: null, at: null, rows: now };
   return { wheel, at, runs: new Set(rows.map((row) => row.run)) };
 }

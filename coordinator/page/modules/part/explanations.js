@@ -1,7 +1,7 @@
 // The explanations of a misfit by falling probability; pointing at one shows what it would change, a click adds it.
 
 import { html, useState } from "../html.js";
-import { t } from "../language/language.js";
+import { t, translated } from "../language/language.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { parameterValue, shownParameter } from "../words/parameter.js";
@@ -10,15 +10,16 @@ import { additionOf, TakeBack } from "./take_back.js";
 
 /** A fitted parameter below this is 0. */
 const ZERO = 1e-12;
-/** So many are shown at first. */
+/** Number of explanations that are shown at first: the others have hardly any probability, and the charts beside them stay in view. */
 const FIRST = 8;
 export const OTHERS = /** @type {Record<string, string>} */ ({ none: t`nothing is missing`, not_in_library: t`a law that is not in the library` });
 
 /**
- * @param {{ record: any, ghost: string | null, kept: string | null, show: (name: string | null) => void, keep: (name: string | null) => void, add: ((extension: any) => void) | null,
+ * @param {{ record: any, unchanged: Set<string>, ghost: string | null, kept: string | null, show: (name: string | null) => void, keep: (name: string | null) => void, add: ((extension: any) => void) | null,
  *   study: any, model: any, isBusy: boolean, reload?: () => void }} properties
+ *   unchanged: the explanations whose best fit changes no prediction
  */
-export function Explanations({ record, ghost, kept, show, keep, add, study, model, isBusy, reload }) {
+export function Explanations({ record, unchanged, ghost, kept, show, keep, add, study, model, isBusy, reload }) {
   const [asked, setAsked] = useState(/** @type {string | null} */ (null));
   const { answer: catalogue } = useAnswer(path.effects);
   const [isAll, setAll] = useState(false);
@@ -29,23 +30,30 @@ export function Explanations({ record, ghost, kept, show, keep, add, study, mode
   const summaryOf = (/** @type {string} */ name) => summaries.get(name.split(".")[0]) ?? told.get(name);
   const made = new Set(study.members.filter((/** @type {any} */ m) => m.kind !== "search").map((/** @type {any} */ m) => m.effects.join(" ")));
   const isMade = (/** @type {string} */ name) => made.has([...model.effects, name].join(" "));
-  const titleOf = (/** @type {string} */ name) => OTHERS[name] ?? capital(summaryOf(name) ?? words(name));
+  const titleOf = (/** @type {string} */ name) => capital(OTHERS[name] ?? translated(summaryOf(name) ?? words(name)));
   const untried = new Map(record.not_tried.map((/** @type {any} */ e) => [e.name, e.why]));
-  const classes = record.effects.reduce((/** @type {Map<number, number>} */ all, /** @type {any} */ e) => all.set(e.class, (all.get(e.class) ?? 0) + 1), new Map());
+  const notesOn = (/** @type {any} */ effect) => {
+    const like = likeOf(record.effects, effect);
+    const isOpen = like.length > 0 ? t`these data cannot tell it from ${few(like)}` : null;
+    return [raised(untried.get(effect.name) ?? ""), isOpen].filter(Boolean).join("; ");
+  };
   return html`
     <div class="scroll" tabindex="0" role="region" aria-label="Explanations">
       <table class="explanations">
-        <thead><tr><th scope="col">explanation</th><th scope="col">probability</th><th scope="col" class="number">nats</th><th scope="col">strength</th><th scope="col"></th></tr></thead>
+        <thead><tr><th scope="col">explanation</th><th scope="col">probability</th><th scope="col" class="number">nats</th><th scope="col">strength</th><td></td></tr></thead>
         <tbody>${effects.map((/** @type {any} */ effect) => html`
           <tr key=${effect.name} class=${`${effect.name === ghost ? "shown" : ""} ${effect.in_credible_set ? "credible" : ""}`}
               onMouseEnter=${() => show(effect.name)} onMouseLeave=${() => show(null)}>
             <th scope="row">
               <button class="plain" type="button" onFocus=${() => show(effect.name)} onBlur=${() => show(null)} onClick=${() => keep(kept === effect.name ? null : effect.name)} aria-pressed=${kept === effect.name} aria-label=${t`${titleOf(effect.name)}: show what ${OTHERS[effect.name] ?? effect.name} would change`}><b>${titleOf(effect.name)}</b></button>
-              <span class="note">${effect.name in OTHERS ? null : html`<code>${effect.name}</code>`} ${[raised(untried.get(effect.name) ?? ""), (classes.get(effect.class) ?? 0) > 1 ? t`these data cannot tell it from ${same(record, effect)}` : null].filter(Boolean).join("; ")}</span>
+              <span class="note">${effect.name in OTHERS ? null : html`<code>${effect.name}</code>`} ${notesOn(effect)}</span>
             </th>
             <td><span class="bar"><i style=${{ width: `${(100 * effect.probability).toFixed(1)}%` }}></i></span> <span class="number">${probability(effect.probability)}</span></td>
             <td class="number">${nats(effect.log_bayes_factor)}</td>
-            <td>${isAbsent(effect) ? html`<span class="note">absent: the best fit does without it</span>` : Object.entries(effect.parameters).map(([name, value]) => html`<div>${strength(name, /** @type {number} */ (value), effect.units[name])}</div>`)}
+            <td>${isAbsent(effect) ? html`<span class="note">absent: the best fit does without it</span>`
+              : unchanged.has(effect.name) ? html`<span class="note">absent: its best fit changes no prediction by a tenth of its error sd</span>`
+              : Object.entries(effect.parameters).map(([name, value]) =>
+                html`<div>${strength(name, /** @type {number} */ (value), effect.units[name])}</div>`)}
               ${effect.prior_sds !== null && Math.abs(effect.prior_sds) > 2 ? html`<span class="note">${digits(effect.prior_sds, 2)} sds out in its prior</span>` : null}</td>
             <td>${add && !(effect.name in OTHERS) && !untried.has(effect.name) && (isMade(effect.name)
               ? html`<span class="note">added</span> <${TakeBack} study=${study} id=${additionOf(study, [...model.effects, effect.name])} reload=${reload} />`
@@ -75,10 +83,19 @@ function strength(/** @type {string} */ name, /** @type {number} */ value, /** @
   return `${shownParameter(called).name} ${parameterValue(called, value)}`;
 }
 
-/** The others of a class. */
-function same(/** @type {any} */ record, /** @type {any} */ effect) {
-  const others = record.effects.filter((/** @type {any} */ e) => e.class === effect.class && e.name !== effect.name).map((/** @type {any} */ e) => e.name);
-  return others.length > 3 ? t`${others.slice(0, 3).join(", ")} and ${others.length - 3} more` : others.join(", ");
+/** Explanations of a class whose evidence differs by more than this are told apart by it [nats]. */
+const ALIKE = 3;
+
+/** The explanations that the data cannot tell from one: of its class, and alike in evidence. */
+export function likeOf(/** @type {any[]} */ effects, /** @type {any} */ effect) {
+  const isLike = (/** @type {any} */ other) => other.class === effect.class && other.name !== effect.name
+    && Math.abs(other.log_bayes_factor - effect.log_bayes_factor) <= ALIKE;
+  return effects.filter(isLike).map((other) => other.name);
+}
+
+/** Names, of which a few are said and the others counted. */
+function few(/** @type {string[]} */ names) {
+  return names.length > 3 ? t`${names.slice(0, 3).join(", ")} and ${names.length - 3} more` : names.join(", ");
 }
 
 /** What is sent to add an effect; `EFFECT.WHEEL` acts on one wheel. */

@@ -19,20 +19,48 @@ export function Flags({ study }) {
     <h2 class="attention">What deserves attention</h2>
     ${now.length === 0 ? html`<p>Nothing about the current model.</p>` : html`<${List} flags=${now} model=${current?.name} />`}
     ${old.length > 0 && html`<details><summary>${old.length === 1 ? t`1 flag` : t`${old.length} flags`} of models that are no longer the current one</summary>
-      ${[...new Set(old.map((/** @type {any} */ f) => f.calibration))].map((id) => html`<h3>${name(/** @type {number} */ (id))}</h3><${List} flags=${old.filter((/** @type {any} */ f) => f.calibration === id)} />`)}
+      ${[...new Set(old.map((/** @type {any} */ f) => f.calibration))].map((id) => html`<h3>${name(/** @type {number} */ (id))}</h3>
+        <${List} flags=${old.filter((/** @type {any} */ f) => f.calibration === id)} />`)}
     </details>`}`;
 }
 
-/** What each kind of flag is about. */
+/** What each kind of flag is about, the weightiest first: those first that make a result wrong, last those that tell of its limits. */
 const KINDS = /** @type {Record<string, string>} */ ({
-  trend: t`errors follow a condition`, chi2: t`errors larger than assumed`, outlier: t`a run stands out`, conflict: t`data against a prior`, bound: t`a parameter at its bound`,
-  not_equilibrated: t`sampler not settled`, no_information: t`data tell little`, rejections: t`parameters refused`, incomplete: t`incomplete`, order: t`errors follow the order of the runs`,
-  worker: t`a worker's results differ`, interpolation_beats: t`interpolation predicts better`, plates_conflict: t`plates against wheel runs`,
+  worker: t`a worker's results differ`,
+  not_equilibrated: t`sampler not settled`,
+  plates_conflict: t`plates against wheel runs`,
+  conflict: t`data against a prior`,
+  interpolation_beats: t`interpolation predicts better`,
+  chi2: t`errors larger than assumed`,
+  incomplete: t`incomplete`,
+  order: t`errors follow the order of the runs`,
+  trend: t`errors follow a condition`,
+  outlier: t`a run stands out`,
+  bound: t`a parameter at its bound`,
+  no_information: t`data tell little`,
+  rejections: t`parameters refused`,
 });
 
+/** Number of flags that are shown at first: a screen has room for their sentences. */
+const FIRST = 3;
+
+/** Flags by the weight of their kind, those of a kind as the service orders them. */
+export function byWeight(/** @type {any[]} */ flags) {
+  const kinds = Object.keys(KINDS);
+  const weight = (/** @type {any} */ flag) => (kinds.includes(flag.kind) ? kinds.indexOf(flag.kind) : kinds.length);
+  return flags.toSorted((a, b) => weight(a) - weight(b));
+}
+
 /** @param {{ flags: any[], model?: string }} properties model: whose name is not said again in each line */
-const List = ({ flags, model }) =>
-  html`<ul class="flags">${flags.map((f) => html`<li><b>${capital(KINDS[f.kind] ?? words(f.kind))}</b>: ${flagWords(f.text, model)}</li>`)}</ul>`;
+function List({ flags, model }) {
+  const ordered = byWeight(flags);
+  const later = ordered.slice(FIRST);
+  const list = (/** @type {any[]} */ some) => html`<ul class="flags">
+    ${some.map((f) => html`<li><b>${capital(KINDS[f.kind] ?? words(f.kind))}</b>: ${flagWords(f.text, model)}</li>`)}</ul>`;
+  return html`${list(ordered.slice(0, FIRST))}
+    ${later.length > 0 && html`<details><summary>${later.length === 1 ? t`1 more flag` : t`${later.length} more flags`}</summary>
+      ${list(later)}</details>`}`;
+}
 
 /** The text of a flag as people write numbers, without the name of the model that it begins with. */
 export function flagWords(/** @type {string} */ text, /** @type {string | undefined} */ model) {

@@ -1,7 +1,7 @@
 // The first thing of a study: its headline, the errors before and after, the explanations by probability, and the picture that shows it.
 
 import { html } from "../html.js";
-import { t } from "../language/language.js";
+import { t, translated } from "../language/language.js";
 import { isReport } from "../rest/answers.js";
 import { changeWords, errorChanges, explanations, headline, probabilityWords, strengthWords } from "../words/headline.js";
 import { capital, channelName, digits, words } from "../words/quantity.js";
@@ -33,7 +33,7 @@ export function Headline({ study, model, reload }) {
 /** An effect that was added, in plain words, with its strength. */
 function Added(/** @type {{ effect: any }} */ { effect }) {
   const strength = strengthWords(effect);
-  return html`<p>Added: <b>${effect.summary ?? words(effect.name)}</b>${strength && `, ${strength}`} <code class="note">${effect.name}</code></p>`;
+  return html`<p>Added: <b>${effect.summary ? translated(effect.summary) : words(effect.name)}</b>${strength && `, ${strength}`} <code class="note">${effect.name}</code></p>`;
 }
 
 /** The error of each channel before and after, beside the noise. */

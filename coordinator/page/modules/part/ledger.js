@@ -3,7 +3,7 @@
 import { html } from "../html.js";
 import { t } from "../language/language.js";
 import { dataSets, runWords } from "../words/ledger.js";
-import { CHANNELS, errorWords, minus, short, shown, unitOf } from "../words/quantity.js";
+import { CHANNELS, errorWords, minus, short, shown, titled, unitOf } from "../words/quantity.js";
 import { Table } from "./table.js";
 
 const USES = { fit: t`fitted`, holdout: t`held out` };
@@ -21,7 +21,7 @@ export function Ledger({ study, lines }) {
 
 function SetLedger(/** @type {{ study: any, lines: import("../words/ledger.js").LedgerLine[], label: string }} */ { study, lines, label }) {
   const channels = CHANNELS.filter((channel) => lines.some(({ line }) => line.error.fit[channel]));
-  const head = [t`model`, t`runs`, ...channels.map((c) => `${short(c)} ${shown(unitOf(c)).unit}`), t`noise sds`, t`in 90 % interval`, t`ln evidence`];
+  const head = [t`model`, t`runs`, ...channels.map((c) => titled(short(c), shown(unitOf(c)).unit)), t`noise sds`, t`in 90 % interval`, t`ln evidence`];
   const row = (/** @type {string} */ name, /** @type {"fit" | "holdout"} */ use, /** @type {any} */ error, /** @type {number | null | undefined} */ inside, evidence = "") => [
     name, USES[use],
     ...channels.map((c) => (error[c] ? errorWords(error[c].rmse * shown(unitOf(c)).scale) : "–")),

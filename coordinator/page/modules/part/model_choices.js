@@ -1,7 +1,7 @@
 // The form that chooses models, priors and effects by their meaning, and the search that follows the calibration.
 
 import { html, useState } from "../html.js";
-import { t } from "../language/language.js";
+import { t, translated } from "../language/language.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import * as template from "../template.js";
@@ -94,6 +94,6 @@ function Effects(/** @type {{ effects: string[], change: (effects: string[]) => 
   const flip = (/** @type {string} */ name) => change(effects.includes(name) ? effects.filter((one) => one !== name) : [...effects, name]);
   return html`
     <details onToggle=${(/** @type {any} */ e) => setOpen(e.target.open)}><summary>${effects.length === 0 ? t`Effects from the start: none; the search tries all of them` : t`Effects from the start: ${effects.map(words).join(", ")}`}</summary>
-      <div class="choices many" tabindex="0" role="region" aria-label="Effects of the catalogue">${(catalogue ?? []).map((/** @type {any} */ effect) => html`<label key=${effect.name}><input type="checkbox" checked=${effects.includes(effect.name)} onChange=${() => flip(effect.name)} /> <b>${words(effect.name)}</b> <span class="note">${effect.summary}</span></label>`)}</div>
+      <div class="choices many" tabindex="0" role="region" aria-label="Effects of the catalogue">${(catalogue ?? []).map((/** @type {any} */ effect) => html`<label key=${effect.name}><input type="checkbox" checked=${effects.includes(effect.name)} onChange=${() => flip(effect.name)} /> <b>${words(effect.name)}</b> <span class="note">${translated(effect.summary)}</span></label>`)}</div>
     </details>`;
 }

@@ -77,7 +77,7 @@ export function NewRuns({ study, model, record, comparison, reload, follow, furt
     <form onSubmit=${send} class="new-runs">
       <div class="scroll" tabindex="0" role="region" aria-label="New runs"><table>
         <thead><tr><th scope="col">run</th>${rigs.length > 1 && html`<th scope="col">wheel</th>`}<th scope="col">${titled(t`slip`, slipUnit.unit)}</th><th scope="col">${titled(t`load`, shown("N").unit)}</th><th scope="col">${titled(t`speed`, shown("m/s").unit)}</th>${isAngled && html`<th scope="col">slip angle °</th>`}
-          ${channels.map((c) => html`<th scope="col">${short(c)} ${unit(c).unit}</th>`)}</tr></thead>
+          ${channels.map((c) => html`<th scope="col">${titled(short(c), unit(c).unit)}</th>`)}</tr></thead>
         <tbody>${now.map((/** @type {NewRun} */ row, /** @type {number} */ k) => html`<tr key=${k}>
           ${field(t`name of run ${k + 1}`, row.run, (run) => set(k, { run }), false)}
           ${rigs.length > 1 && html`<td><select aria-label=${t`wheel of run ${k + 1}`} value=${row.rig} required=${isFilled(row)} onChange=${(/** @type {any} */ e) => set(k, { rig: e.target.value })}>

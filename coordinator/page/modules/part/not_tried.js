@@ -1,7 +1,7 @@
 // What the search cannot speak about: what the experiment does not state, what is too weak to see, what the model refuses.
 
 import { html } from "../html.js";
-import { t } from "../language/language.js";
+import { t, translated } from "../language/language.js";
 import { raised } from "../words/quantity.js";
 
 /** Names without `EFFECT.WHEEL` where `EFFECT` is in the list. */
@@ -21,7 +21,8 @@ export function NotTried({ record }) {
   const lists = [[t`too weak to be seen with these data at usual strength`, record.cannot_exclude], [t`refused by the model at every strength`, record.refused], [t`no longer improves the evidence`, record.drop]];
   return html`
     ${untried.size > 0 && html`<h2>Cannot be judged, as the experiment is described</h2>
-      <ul>${[...untried.values()].map((same) => html`<li><b>${folded(same.names).join(", ")}</b>: ${raised(same.why)}. ${same.needs.startsWith("runs ") ? `Measure ${same.needs}.` : html`To be stated: <code>${same.needs}</code>.`}</li>`)}</ul>`}
+      <ul>${[...untried.values()].map((same) => html`<li><b>${folded(same.names).join(", ")}</b>: ${raised(same.why)}.${" "}
+        ${same.needs.startsWith("runs ") ? t`To be measured: ${translated(same.needs)}.` : html`To be stated: <code>${same.needs}</code>.`}</li>`)}</ul>`}
     ${lists.filter(([, names]) => names.length > 0).map(([words, names]) => html`
       <details><summary>${folded(/** @type {string[]} */ (names)).length} ${words}</summary><p>${folded(/** @type {string[]} */ (names)).join(", ")}</p></details>`)}`;
 }

@@ -5,7 +5,7 @@ import { t } from "../language/language.js";
 import { listed, ORDERS } from "../words/study_order.js";
 import { StudyTable } from "./study_table.js";
 
-/** So many are shown at first. */
+/** Number of studies that are shown at first: the table of hundreds is slow to draw, and the newest stand first. */
 const FIRST = 50;
 /** Fewer studies need no search. */
 const LEAST = 4;

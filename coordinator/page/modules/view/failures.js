@@ -92,7 +92,10 @@ function HeatMap(/** @type {{ rows: any[], order: string, name: string }} */ { r
     marks: [
       Plot.cell(judged, byRun(judged, { x: "run", y: "channel", fill, inset: runs.length > 200 ? 0 : 0.5 }, isMany)),
       Plot.dot(held, isMany ? byRun(held, { ...heldLook, r: 1 }, true) : { ...heldLook, r: isNamed(width) ? 2 : 1 }),
-      Plot.tip(judged, Plot.pointer({ x: "run", y: "channel", title: hint, fill: "var(--panel)", stroke: "var(--rule)" })),
+      // The words are made of the run that is pointed at alone.
+      Plot.tip(judged, Plot.pointer({
+        x: "run", y: "channel", title: (/** @type {any} */ r) => r, format: { title: hint }, fill: "var(--panel)", stroke: "var(--rule)",
+      })),
     ],
   });
   return html`<${Figure} title="Residuals of every run and channel, in sds of noise, scatter of the soil and discrepancy" name=${fileName(name, "residuals")} deps=${[rows, order]} draw=${draw}

@@ -1,6 +1,6 @@
 // What is missing: the explanations with their probabilities, what each would change, what was not tried, and which runs would tell.
 
-import { html, useState } from "../html.js";
+import { html, useMemo, useState } from "../html.js";
 import { varying } from "../chart/condition.js";
 import { LawChart } from "../chart/law_chart.js";
 import { InformationMap } from "../chart/information_map.js";
@@ -16,7 +16,9 @@ import { isReport } from "../rest/answers.js";
 import { discover, extend, path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address, replace } from "../route.js";
-import { byChange, withGhost } from "../words/ghost.js";
+import { benchTest } from "../words/bench_test.js";
+import { byChange, withGhost, withoutChange } from "../words/ghost.js";
+import { capital } from "../words/quantity.js";
 
 /** @param {{ study: any, model: any, query: Record<string, string>, reload?: () => void }} properties query.effect: whose curves are kept over the data */
 export function MissingEffect({ study, model, query, reload }) {
@@ -31,6 +33,7 @@ export function MissingEffect({ study, model, query, reload }) {
   const ghost = pointed ?? kept;
   const [failure, setFailure] = useState(/** @type {any} */ (null));
   const [isBusy, setBusy] = useState(false);
+  const unchanged = useMemo(() => withoutChange(comparison?.rows ?? [], record?.curves), [comparison, record]);
   if (!model) return html`<${NoModel} study=${study} />`;
   // The address holds the choice, so that everybody who opens it sees the same curves.
   const keep = (/** @type {string | null} */ effect) => {
@@ -65,7 +68,7 @@ export function MissingEffect({ study, model, query, reload }) {
     <${Failure} error=${failure} />
     <div class="beside">
       <div>
-        <${Explanations} record=${record} ghost=${ghost} kept=${kept} show=${setPointed} keep=${keep} add=${isReport ? null : add} study=${study} model=${model} isBusy=${isBusy} reload=${reload} />
+        <${Explanations} record=${record} unchanged=${unchanged} ghost=${ghost} kept=${kept} show=${setPointed} keep=${keep} add=${isReport ? null : add} study=${study} model=${model} isBusy=${isBusy} reload=${reload} />
       </div>
       <div class="ghosts">
         <p class="note" aria-live="polite">${ghost ? html`Dashed: what <b>${OTHERS[ghost] ?? ghost}</b> would predict for the fitted runs, from the search's fit. Nothing has been computed anew.` : t`Point at an explanation: its predictions appear over the data before anything is computed; a click on its name keeps them.`}</p>
@@ -77,6 +80,12 @@ export function MissingEffect({ study, model, query, reload }) {
     <h2>Which runs would tell</h2>
     ${record.next_runs.length === 0 && html`<p>No run within reach of the rig would change these probabilities by much.</p>`}
     <${InformationMap} record=${record} name=${study.name} />
-    ${record.other_tests.length > 0 && html`<h3>Tests without a rolling wheel that would tell</h3><ul>${record.other_tests.map((/** @type {string} */ t) => html`<li>${t}</li>`)}</ul>`}
+    ${record.other_tests.length > 0 && html`<h3>Tests without a rolling wheel that would tell</h3><ul>${record.other_tests.map((/** @type {string} */ text) => html`<${BenchTest} text=${text} />`)}</ul>`}
     ${!isReport && comparison && html`<${NewRuns} study=${study} model=${model} record=${record} comparison=${comparison} reload=${reload} />`}`;
+}
+
+/** A test without a rolling wheel; where its result is stated in the files is folded. */
+function BenchTest(/** @type {{ text: string }} */ { text }) {
+  const { what, place } = benchTest(text);
+  return html`<li>${capital(what)} ${place && html`<details><summary>Where it is stated in the files</summary><span class="note">${place}</span></details>`}</li>`;
 }

@@ -154,8 +154,8 @@ function Statement(/** @type {{ found: any, statement: any, change: (to: any) =>
     <p class="actions" role="group" aria-label="A statement about a new measurement">
       <span class="whole">How probable is ${quantityName(found.name)}</span>
       <select aria-label="above or below" onChange=${(/** @type {any} */ e) => change({ ...statement, sign: e.target.value })}>${[">", "<"].map((sign) => html`<option value=${sign} selected=${sign === statement.sign}>${sign}</option>`)}</select>
-      <input size="7" inputmode="decimal" aria-label=${titled(t`limit`, unit)} aria-invalid=${!isOpen && !isNumber} value=${statement.limit} onInput=${(/** @type {any} */ e) => change({ ...statement, limit: e.target.value })} />
-      <span>${unit === "1" ? "" : unit}?</span></p>
+      <span class="whole"><input size="7" inputmode="decimal" aria-label=${titled(t`limit`, unit)} aria-invalid=${!isOpen && !isNumber} value=${statement.limit}
+        onInput=${(/** @type {any} */ e) => change({ ...statement, limit: e.target.value })} /> ${unit === "1" ? "" : unit}?</span></p>
     ${!isOpen && isNumber && html`<p role="status" class="answer">${answer ? html`<b>P ${probability(answer.measurement ?? answer.models ?? 0)}</b> <span class="note">${answer.measurement === null ? t`by the parameters alone: the noise is not known` : t`that a new measurement says so`}</span>` : isBusy ? html`<span class="note">is being computed …</span>` : ""}</p>`}`;
 }
 

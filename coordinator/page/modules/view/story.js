@@ -106,7 +106,8 @@ function Step(/** @type {{ step: any, study: any, model: any, reload?: () => voi
     make_runs: () => html`<a class="button" href=${address(["studies", study.id, "effects"], { model: step.calibration })}>See the runs, and add them</a>`,
   });
   const button = !isReport && model && buttons[step.kind];
-  // Where a result goes in the job is read when it is there.
-  const [text, place] = step.text.split(/\. (?=Its result goes under )/);
-  return html`${sentence(text)} ${place && html`<details><summary>Where it goes in the job</summary><span class="note">${place}</span></details>`}${button ? html`<span class="actions">${button()}</span>` : step.command && html`<code>coordinator ${step.command}${isReport ? " --out ." : ""}</code>`}<${Failure} error=${failure} />`;
+  const call = button ? html`<span class="actions">${button()}</span>`
+    : step.command && html`<code>coordinator ${step.command}${isReport ? " --out ." : ""}</code>`;
+  return html`${sentence(step.text)} ${step.detail && html`<details>
+    <summary>Where it is stated in the files</summary><span class="note">${sentence(step.detail)}</span></details>`}${call}<${Failure} error=${failure} />`;
 }

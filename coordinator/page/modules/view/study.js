@@ -1,9 +1,9 @@
 // A study: its views, and the model that they show.
 
-import { html, useEffect } from "../html.js";
+import { html, useEffect, useRef } from "../html.js";
 import { t, translated } from "../language/language.js";
-import { ChosenRuns } from "../part/chosen_runs.js";
 import { Guarded } from "../part/guarded.js";
+import { Later } from "../part/later.js";
 import { Pending } from "../part/message.js";
 import { Source } from "../part/source.js";
 import { StudyActions } from "../part/study_actions.js";
@@ -11,9 +11,11 @@ import { SaidOfStudy } from "../part/study_details.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address, replace } from "../route.js";
-import { choose, point } from "../selection.js";
+import { choose, point, useChosen } from "../selection.js";
 import { modelName, modelOf, models } from "../words/model.js";
 import { ShownView, VIEWS } from "./views.js";
+
+const chosenRuns = () => import("../part/chosen_runs.js").then((module) => module.ChosenRuns);
 
 /** How often a study that works is looked at [ms]. */
 const LOOK_MS = 1000;
@@ -52,7 +54,14 @@ export function StudyPage({ id, view, query }) {
       <${Guarded} key=${`${shown.name} ${model?.id}`} title=${shown.title}><${ShownView} view=${shown} study=${study} model=${model} query=${query} reload=${reload} /><//>
     </section>
     <${StudyActions} study=${study} reload=${reload} />
-    <${ChosenRuns} study=${study} model=${model} asked=${query.runs} view=${shown.name} />`;
+    <${ChosenRunsLater} study=${study} model=${model} asked=${query.runs} view=${shown.name} />`;
+}
+
+/** The bar of chosen runs, which is loaded when runs are chosen first, here or by the address. It stays to take them out of the address again. */
+function ChosenRunsLater(/** @type {{ study: any, model: any, asked?: string, view: string }} */ properties) {
+  const isNeeded = useRef(false);
+  if (useChosen() || properties.asked) isNeeded.current = true;
+  return isNeeded.current ? html`<${Later} title=${t`Chosen runs`} load=${chosenRuns} ...${properties} />` : null;
 }
 
 /** Which model of the study the pictures show. */

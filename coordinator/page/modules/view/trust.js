@@ -8,7 +8,7 @@ import { Table } from "../part/table.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { parameterTitle, shownParameter } from "../words/parameter.js";
-import { capital, channelName, digits, probability, shown } from "../words/quantity.js";
+import { capital, channelName, digits, probability, shown, titled } from "../words/quantity.js";
 import { judgements } from "../words/trust.js";
 
 /** @param {{ study: any, model: any }} properties */
@@ -52,7 +52,7 @@ function Data(/** @type {{ diagnostics: any }} */ { diagnostics }) {
   const channels = diagnostics.channels.map((/** @type {any} */ c) => {
     const quantity = shown(c.unit);
     const value = (/** @type {number | null} */ v) => digits(v === null ? null : v * quantity.scale);
-    return [`${channelName(c.channel)} ${quantity.unit}`, c.data, value(c.error_sd), value(c.prior_predictive_sd), digits(c.information, 2), digits(c.chi_square?.chi_square), digits(c.chi_square?.degrees_of_freedom), p(c.chi_square?.p)];
+    return [titled(channelName(c.channel), quantity.unit), c.data, value(c.error_sd), value(c.prior_predictive_sd), digits(c.information, 2), digits(c.chi_square?.chi_square), digits(c.chi_square?.degrees_of_freedom), p(c.chi_square?.p)];
   });
   const parameters = diagnostics.parameters.map((/** @type {any} */ q) => [shownParameter(q).name, digits(q.contraction, 2), p(q.conflict_p), q.at_bound ? t`at its bound` : ""]);
   return html`

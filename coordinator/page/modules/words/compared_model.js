@@ -1,7 +1,7 @@
 // The models that a job compares, as the words of a table.
 
 import { t } from "../language/language.js";
-import { CHANNELS, digits, errorWords, minus, probability, short, shown, unitOf } from "./quantity.js";
+import { CHANNELS, digits, errorWords, minus, probability, short, shown, titled, unitOf } from "./quantity.js";
 
 /** Names in the order of falling evidence; a model without evidence comes last. */
 const byEvidence = (/** @type {any} */ a, /** @type {any} */ b) => (b.log_evidence ?? -Infinity) - (a.log_evidence ?? -Infinity);
@@ -13,7 +13,7 @@ const byEvidence = (/** @type {any} */ a, /** @type {any} */ b) => (b.log_eviden
  */
 export function comparedModels(comparison) {
   const channels = CHANNELS.filter((channel) => comparison.models.some((/** @type {any} */ m) => m.left_out?.[channel]));
-  const head = [t`model`, t`ln evidence`, t`probability`, t`p of chi-square`, ...channels.map((c) => `${short(c)} ${shown(unitOf(c)).unit}`), t`noise sds`, t`answer`];
+  const head = [t`model`, t`ln evidence`, t`probability`, t`p of chi-square`, ...channels.map((c) => titled(short(c), shown(unitOf(c)).unit)), t`noise sds`, t`answer`];
   const rows = [...comparison.models].sort(byEvidence).map((model) => [
     model.name, evidence(model), probability(model.probability), model.chi_square_p === null ? "–" : probability(model.chi_square_p),
     ...channels.map((c) => (model.left_out?.[c] ? errorWords(model.left_out[c].rmse * shown(unitOf(c)).scale) : "–")),

@@ -2,6 +2,9 @@
 
 import { CHANNELS } from "./quantity.js";
 
+/** A change of every prediction by less than this share of its error sd is not seen in the data. */
+const LEAST_CHANGE = 0.1;
+
 /**
  * The model, and the predictions of an explanation in its place.
  * @param {any[]} rows
@@ -24,14 +27,35 @@ export function withGhost(rows, curves, ghost) {
  * @param {string | null} ghost
  */
 export function byChange(rows, curves, ghost) {
-  const values = ghost ? curves?.effects?.[ghost] : null;
-  if (!values) return CHANNELS;
-  const sds = new Map(rows.map((row) => [`${row.run} ${row.channel}`, row.error_sd]));
+  if (!ghost || !curves?.effects?.[ghost]) return CHANNELS;
+  const changes = changesOf(errorsOf(rows), curves, ghost);
+  return CHANNELS.toSorted((a, b) => (changes.get(b) ?? 0) - (changes.get(a) ?? 0));
+}
+
+/**
+ * The explanations whose best fit predicts what the model without them predicts.
+ * @param {any[]} rows
+ * @param {any} curves
+ * @returns {Set<string>}
+ */
+export function withoutChange(rows, curves) {
+  const errors = errorsOf(rows);
+  const isUnchanged = (/** @type {string} */ name) => [...changesOf(errors, curves, name).values()].every((change) => change < LEAST_CHANGE);
+  return new Set(Object.keys(curves?.effects ?? {}).filter((name) => name !== "none" && isUnchanged(name)));
+}
+
+/** The error sd of each measurement. */
+const errorsOf = (/** @type {any[]} */ rows) => new Map(rows.map((row) => [`${row.run} ${row.channel}`, row.error_sd]));
+
+/** The largest change of each channel by an explanation, in error sds; infinite where an error is not known. */
+function changesOf(/** @type {Map<string, number>} */ errors, /** @type {any} */ curves, /** @type {string} */ name) {
+  const values = curves.effects[name];
   /** @type {Map<string, number>} */
   const changes = new Map();
-  curves.data.forEach((/** @type {any} */ d, /** @type {number} */ k) => {
-    const change = Math.abs(values[k] - curves.base[k]) / (sds.get(`${d.run} ${d.channel}`) || Infinity);
-    changes.set(d.channel, Math.max(changes.get(d.channel) ?? 0, change));
+  curves.data.forEach((/** @type {any} */ datum, /** @type {number} */ k) => {
+    const difference = Math.abs(values[k] - curves.base[k]);
+    const change = difference === 0 ? 0 : difference / (errors.get(`${datum.run} ${datum.channel}`) || 0);
+    changes.set(datum.channel, Math.max(changes.get(datum.channel) ?? 0, change));
   });
-  return CHANNELS.toSorted((a, b) => (changes.get(b) ?? 0) - (changes.get(a) ?? 0));
+  return changes;
 }

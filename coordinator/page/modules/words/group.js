@@ -37,50 +37,56 @@ export function groups(rows, against = "slip") {
   const factors = { slip: slips(rows), wheel_load_n: loads(rows), sled_speed_m_s: speeds(rows), slip_angle_deg: angles(rows) };
   const usual = against === "wheel_load_n" ? "slip" : "wheel_load_n";
   const free = Object.entries(factors).filter(([key]) => key !== against);
-  const widest = free.reduce((most, one) => (one[1].names.length > most[1].names.length ? one : most), [usual, factors[usual]]);
+  const widest = free.reduce((best, factor) => (factor[1].names.length > best[1].names.length ? factor : best), [usual, factors[usual]]);
   const [colourKey, first] = factors[usual].names.length > 1 ? [usual, factors[usual]] : widest;
-  const others = free.filter(([key]) => key !== colourKey).map(([, factor]) => factor);
-  const symbols = others.reduce((/** @type {string[]} */ names, factor) =>
+  const symbolFactors = free.filter(([key]) => key !== colourKey).map(([, factor]) => factor);
+  const symbols = symbolFactors.reduce((/** @type {string[]} */ names, factor) =>
     names.flatMap((name) => factor.names.map((level) => [name, factor.names.length > 1 ? level : ""].filter(Boolean).join(", "))), [""]);
   /** @type {Map<string, Group<R>>} */
-  const found = new Map();
+  const byLevels = new Map();
   for (const row of rows) {
     const colour = first.of(row);
-    const symbol = others.reduce((place, factor) => place * factor.names.length + factor.of(row), 0);
-    const group = found.get(`${colour} ${symbol}`) ?? { colour, symbol, rows: [] };
+    const symbol = symbolFactors.reduce((place, factor) => place * factor.names.length + factor.of(row), 0);
+    const group = byLevels.get(`${colour} ${symbol}`) ?? { colour, symbol, rows: [] };
     group.rows.push(row);
-    found.set(`${colour} ${symbol}`, group);
+    byLevels.set(`${colour} ${symbol}`, group);
   }
-  const ordered = [...found.values()].sort((a, b) => a.colour - b.colour || a.symbol - b.symbol);
+  const ordered = [...byLevels.values()].sort((a, b) => a.colour - b.colour || a.symbol - b.symbol);
   return { groups: ordered, colours: first.names, symbols, colourKey, single: colourKey === usual ? null : factors[usual].names[0] ?? null };
 }
 
 /** @returns {Factor} */
 function loads(/** @type {Condition[]} */ rows) {
-  const found = levels(rows.map((row) => row.wheel_load_n));
-  return { names: found.map((level) => levelWords(level, shown("N").unit, shown("N").scale)), of: (row) => levelOf(found, row.wheel_load_n) };
+  const loadLevels = levels(rows.map((row) => row.wheel_load_n));
+  const { unit, scale } = shown("N");
+  return { names: loadLevels.map((level) => levelWords(level, unit, scale)), of: (row) => levelOf(loadLevels, row.wheel_load_n) };
 }
 
 /** A rig holds the speed of the rim or that of the sled: the one with fewer levels. @returns {Factor} */
 function speeds(/** @type {Condition[]} */ rows) {
   const [rim, sled] = [rimSpeed, (/** @type {Condition} */ row) => row.sled_speed_m_s].map((speed) => {
-    const own = (/** @type {Condition} */ row) => Math.max(speed(row), LEAST_SPEED);
-    return { own, found: levels(rows.map(own)) };
+    const bounded = (/** @type {Condition} */ row) => Math.max(speed(row), LEAST_SPEED);
+    return { bounded, speedLevels: levels(rows.map(bounded)) };
   });
-  const [{ own, found }, held] = sled.found.length < rim.found.length ? [sled, t`sled`] : [rim, t`rim`];
-  return { names: found.map((level) => `${held} ${levelWords(level, shown("m/s").unit, shown("m/s").scale)}`), of: (row) => levelOf(found, own(row)) };
+  const [{ bounded, speedLevels }, name] = sled.speedLevels.length < rim.speedLevels.length ? [sled, t`sled`] : [rim, t`rim`];
+  const { unit, scale } = shown("m/s");
+  return { names: speedLevels.map((level) => `${name} ${levelWords(level, unit, scale)}`), of: (row) => levelOf(speedLevels, bounded(row)) };
 }
 
 /** @returns {Factor} */
 function angles(/** @type {Condition[]} */ rows) {
-  const found = [...new Set(rows.map((row) => row.slip_angle_deg))].sort((a, b) => a - b);
-  return { names: found.map((angle) => `${angle}°`), of: (row) => found.indexOf(row.slip_angle_deg) };
+  const ascending = [...new Set(rows.map((row) => row.slip_angle_deg))].sort((a, b) => a - b);
+  return { names: ascending.map((angle) => `${angle}°`), of: (row) => ascending.indexOf(row.slip_angle_deg) };
 }
 
 /** A driven wheel's slips are levels; those of a wheel in skid, or near rest, are single values. @returns {Factor} */
 function slips(/** @type {Condition[]} */ rows) {
   const driven = levels(rows.map((row) => row.slip).filter((slip) => slip > 0));
   const rest = [...new Set(rows.map((row) => row.slip).filter((slip) => !(slip > 0)))].sort((a, b) => a - b);
-  const names = [...rest.map((slip) => t`slip ${slipWords(Number(slip.toPrecision(2)))}`), ...driven.map((level) => t`slip ${levelWords(level, slipUnit.unit === "1" ? "" : slipUnit.unit, slipUnit.scale)}`.trim())];
+  const unit = slipUnit.unit === "1" ? "" : slipUnit.unit;
+  const names = [
+    ...rest.map((slip) => t`slip ${slipWords(Number(slip.toPrecision(2)))}`),
+    ...driven.map((level) => t`slip ${levelWords(level, unit, slipUnit.scale)}`.trim()),
+  ];
   return { names, of: (row) => (row.slip > 0 ? rest.length + levelOf(driven, row.slip) : rest.indexOf(row.slip)) };
 }

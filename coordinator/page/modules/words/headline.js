@@ -1,6 +1,6 @@
 // The headline of a study: what was found, in one sentence with the error before and after it.
 
-import { t } from "../language/language.js";
+import { t, translated } from "../language/language.js";
 import { meanAndSpread, shownParameter } from "./parameter.js";
 import { capital, channelName, digits, errorWords, probability, shown, unitOf, words } from "./quantity.js";
 
@@ -14,7 +14,10 @@ import { capital, channelName, digits, errorWords, probability, shown, unitOf, w
 const USES = { fit: t`fitted runs`, holdout: t`held-out runs` };
 
 /** What an explanation says in plain words; its name where there are none. */
-const plain = (/** @type {any} */ { name, summary }) => (name === "none" ? t`nothing is missing` : summary ?? (name === "not_in_library" ? t`a law that is not in the library` : words(name)));
+function plain(/** @type {any} */ { name, summary }) {
+  if (name === "none") return t`nothing is missing`;
+  return summary ? translated(summary) : name === "not_in_library" ? t`a law that is not in the library` : words(name);
+}
 
 /**
  * The submitted model, where the shown one has effects that it has not and both were calibrated on the same runs.

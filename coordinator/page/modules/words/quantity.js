@@ -1,6 +1,6 @@
 // Quantities as people read them: their names, units and digits.
 
-import { t } from "../language/language.js";
+import { t, translated } from "../language/language.js";
 import { shownUnit } from "../units.js";
 
 /** How a unit in SI is shown: in the units that a person chose. */
@@ -13,11 +13,14 @@ const UNITS = { drawbar_pull: "N", torque: "N m", sinkage: "m", lateral_force: "
 /** The channels in their order. */
 export const CHANNELS = /** @type {const} */ (["drawbar_pull", "torque", "sinkage", "lateral_force"]);
 
-/** Units and numbers in a text of the service as people write them: `kg/m³`, `7·10⁻⁷`, `−0.5`, and to four digits where it has all. */
+/**
+ * Units and numbers in a text of the service as people write them: `kg/m³`, `7·10⁻⁷`, `−0.5`. A number with nine decimals or more, which is
+ * written to the last digit, has four digits, or its whole part.
+ */
 export const raised = (/** @type {string} */ text) => text.replace(/\^([23])/g, (_, exponent) => (exponent === "2" ? "²" : "³"))
+  .replace(/\d+\.\d{9,}(?!\d*e)/g, (number) => String(Number(Number(number).toPrecision(Math.max(4, number.indexOf("."))))))
   .replace(/(?<![\w.]|\w-)(\d+(?:\.\d+)?)e([+-]?\d+)(?!\w)/g, (_, factor, exponent) => `${factor === "1" ? "" : `${factor}·`}${power(Number(exponent))}`)
-  .replace(/(?<=^|[\s(])-(?=\d)/g, "−")
-  .replace(/\d+\.\d{9,}/g, (number) => String(Number(Number(number).toPrecision(4))));
+  .replace(/(?<=^|[\s(])-(?=\d)/g, "−");
 
 /** `drawbar_pull` as words. */
 export const words = (/** @type {string} */ name) => name.replaceAll("_", " ");
@@ -35,7 +38,8 @@ const spelt = (/** @type {string} */ unit) => unit.toLowerCase().replace(/^1\//,
  * @param {string | null | undefined} unit in SI
  */
 export function parameterName(name, unit) {
-  return words(unit && unit !== "1" ? name.replace(new RegExp(`_${spelt(unit)}(?=\\.[^.]*$|$)`), "") : name).replaceAll(".", ": ");
+  const bare = unit && unit !== "1" ? name.replace(new RegExp(`_${spelt(unit)}(?=\\.[^.]*$|$)`), "") : name;
+  return bare.split(".").map((part) => translated(words(part))).join(": ");
 }
 
 /** A number that a person typed, with a point or a comma; null where it is none. */
