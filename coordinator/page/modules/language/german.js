@@ -8,7 +8,4 @@ import { SENTENCES } from "./german_sentences.js";
 import { WORDS } from "./german_words.js";
 
 /** @type {Record<string, string>} texts by their English form; `{0}` stands for the first part that varies */
-<<<<<<< HEAD
-export const GERMAN = { ...WORDS, ...SENTENCES, ...CALCULATOR, ...CAMPAIGN };
-=======
-export const GERMAN = { ...WORDS, ...SENTENCES, ...CALCULATOR, ...EFFECTS, ...PARAMETERS };
+export const GERMAN = { ...WORDS, ...SENTENCES, ...CALCULATOR, ...CAMPAIGN, ...EFFECTS, ...PARAMETERS };
