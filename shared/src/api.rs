@@ -113,7 +113,7 @@ pub struct NewFollow {
     /// The largest number of evaluations of the search for what is missing; by default, 100,000 of a model in steady motion and 2,000 of any
     /// other.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub most_evaluations: Option<usize>,
+    pub max_evaluations: Option<usize>,
 }
 
 /// `POST /v1/calibrations/ID/what-if`.

@@ -176,8 +176,8 @@ fn a_search_ends_at_its_bound_and_the_answer_says_so() {
     let id = service.submit(&job);
     service.wait_for(id, "finished");
     let rows = table(&header, &more[..1]);
-    let bounded = |most: usize| -> Value {
-        let body = json!({"runs": rows, "most_evaluations": most});
+    let bounded = |max_evaluations: usize| -> Value {
+        let body = json!({"runs": rows, "max_evaluations": max_evaluations});
         let answer = service
             .client
             .post(&format!("/v1/calibrations/{id}/follow"), &body);

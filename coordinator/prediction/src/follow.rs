@@ -41,7 +41,7 @@ pub struct FollowedSearch {
     /// Number of evaluations that it took.
     pub evaluations: usize,
     /// The largest number that it may take.
-    pub most_evaluations: usize,
+    pub max_evaluations: usize,
     /// Whether the next step would have taken more, so that there is no verdict.
     pub is_at_bound: bool,
     /// The most probable explanations where it was ended at its bound; else empty.
@@ -163,7 +163,7 @@ pub fn stop(verdict: Verdict, next_runs: &[NextRun]) -> Option<String> {
 /// Returns the sentence in the place of a verdict where a search was ended at its bound.
 ///
 /// Checked by `tests::a_search_that_was_ended_says_its_bound_and_what_leads`.
-pub fn unfinished(most_evaluations: usize, progress: &SearchProgress) -> String {
+pub fn unfinished(max_evaluations: usize, progress: &SearchProgress) -> String {
     let leader = progress.leaders.first().map_or_else(String::new, |leader| {
         let name = match leader.effects.as_slice() {
             [] => "nothing is missing".to_owned(),
@@ -175,7 +175,7 @@ pub fn unfinished(most_evaluations: usize, progress: &SearchProgress) -> String 
         )
     });
     format!(
-        "not known: the search was ended at its bound of {most_evaluations} evaluations, where it {}{leader}",
+        "not known: the search was ended at its bound of {max_evaluations} evaluations, where it {}{leader}",
         progress.doing
     )
 }

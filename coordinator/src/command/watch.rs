@@ -48,7 +48,7 @@ pub(super) async fn watch(config: &WatchArguments) -> anyhow::Result<()> {
         rows: Rows::new(config, experiment)?,
         place,
         id,
-        most_evaluations: config.most_evaluations,
+        max_evaluations: config.max_evaluations,
         followed: String::new(),
     };
     let mut said = String::new();
@@ -104,7 +104,7 @@ struct Watch {
     /// Names of the runs of the calibration's experiment.
     known: BTreeSet<String>,
     rows: Rows,
-    most_evaluations: Option<usize>,
+    max_evaluations: Option<usize>,
     /// The rows that were followed last.
     followed: String,
 }
@@ -132,7 +132,7 @@ impl Watch {
             let begin = Instant::now();
             let new = NewFollow {
                 runs: runs.clone(),
-                most_evaluations: self.most_evaluations,
+                max_evaluations: self.max_evaluations,
             };
             let answer: Followed = self
                 .place

@@ -71,7 +71,7 @@ pub struct WatchArguments {
     /// Largest number of evaluations of the search for what is missing after each run; by default, 100,000 of a model in steady motion and
     /// 2,000 of any other.
     #[arg(long, value_name = "COUNT")]
-    pub most_evaluations: Option<usize>,
+    pub max_evaluations: Option<usize>,
     /// Ends after the rows that the file has now.
     #[arg(long)]
     pub once: bool,

@@ -7,7 +7,7 @@ use prediction::follow::Followed;
 use tokio::sync::watch;
 
 /// Number of campaigns whose last answer is remembered.
-const MOST: usize = 100;
+const MAX_CAMPAIGNS: usize = 100;
 
 /// The answers of a campaign as they come; `None` before the first one.
 pub(super) type Answers = watch::Receiver<Option<Arc<Followed>>>;
@@ -30,7 +30,7 @@ impl Campaigns {
 
     fn with<T>(&self, id: i64, act: impl FnOnce(&watch::Sender<Option<Arc<Followed>>>) -> T) -> T {
         let mut campaigns = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if campaigns.len() >= MOST {
+        if campaigns.len() >= MAX_CAMPAIGNS {
             // Nobody waits for these.
             campaigns.retain(|other, sender| *other == id || sender.receiver_count() > 0);
         }
@@ -45,7 +45,7 @@ mod tests {
     fn answer(calibration: i64, run: &str) -> Followed {
         serde_json::from_value(serde_json::json!({
             "calibration": calibration, "runs": [run], "rows": "", "expectations": [], "models": [], "parameters": [], "verdict": "",
-            "search": {"evaluations": 0, "most_evaluations": 1, "is_at_bound": false, "leaders": []}, "next_runs": [], "stop": null,
+            "search": {"evaluations": 0, "max_evaluations": 1, "is_at_bound": false, "leaders": []}, "next_runs": [], "stop": null,
         }))
         .expect("an answer")
     }
@@ -69,11 +69,11 @@ mod tests {
     fn campaigns_that_nobody_waits_for_are_forgotten_where_there_are_many() {
         let campaigns = Campaigns::default();
         let watched = campaigns.answers(0);
-        for id in 0..=MOST as i64 {
+        for id in 0..=MAX_CAMPAIGNS as i64 {
             campaigns.tell(answer(id, "a"));
         }
         assert!(watched.borrow().is_some());
         let count = campaigns.0.lock().unwrap().len();
-        assert!((2..MOST).contains(&count), "{count}");
+        assert!((2..MAX_CAMPAIGNS).contains(&count), "{count}");
     }
 }

@@ -63,7 +63,7 @@ fn followed(study: Study, id: i64, files: &FileSet, asked: NewFollow) -> Result<
     let ensemble = Ensemble::new(study, id, BTreeMap::new())?;
     // A posterior is updated by simulations of all runs, in up to nine rounds of this many draws.
     let most_draws = ensemble.affordable_draws(experiment.runs.len())?;
-    let most_evaluations = asked.most_evaluations.unwrap_or(match ensemble.is_fast() {
+    let max_evaluations = asked.max_evaluations.unwrap_or(match ensemble.is_fast() {
         true => STEADY_EVALUATIONS,
         false => SLOW_EVALUATIONS,
     });
@@ -98,7 +98,7 @@ fn followed(study: Study, id: i64, files: &FileSet, asked: NewFollow) -> Result<
     }
     weigh(&mut models);
     let job = &simulated.models[0].calibration.row.job;
-    let search = searched(&continued_job(FILES[0], job)?, &enlarged, most_evaluations)?;
+    let search = searched(&continued_job(FILES[0], job)?, &enlarged, max_evaluations)?;
     let found = search.found.as_ref();
     Ok(Followed {
         calibration: id,
@@ -108,11 +108,11 @@ fn followed(study: Study, id: i64, files: &FileSet, asked: NewFollow) -> Result<
         parameters: of_asked,
         verdict: match found {
             Some(found) => found.text.clone(),
-            None => unfinished(most_evaluations, &search.progress),
+            None => unfinished(max_evaluations, &search.progress),
         },
         search: FollowedSearch {
             evaluations: search.evaluations,
-            most_evaluations,
+            max_evaluations,
             is_at_bound: found.is_none(),
             leaders: found.map_or(search.progress.leaders, |_| Vec::new()),
         },
@@ -196,11 +196,11 @@ struct Searched {
 }
 
 /// Searches the model of a job for a missing effect, as the farm does, in this process. The search is ended before the round with which it
-/// would take more than `most_evaluations`.
+/// would take more than `max_evaluations`.
 fn searched(
     job: &FileSet,
     experiment: &FileSet,
-    most_evaluations: usize,
+    max_evaluations: usize,
 ) -> Result<Searched, PredictionError> {
     let model = |e: &dyn std::fmt::Display| PredictionError::Model(e.to_string());
     let models = SearchModels::new(job, experiment, MAX_EFFECTS_TOGETHER)?;
@@ -209,7 +209,7 @@ fn searched(
     loop {
         let found = running.record();
         let asked: Vec<usize> = running.pending().iter().map(|query| query.particle).collect();
-        if found.is_some() || evaluations + asked.len() > most_evaluations {
+        if found.is_some() || evaluations + asked.len() > max_evaluations {
             return Ok(Searched {
                 found,
                 evaluations,
