@@ -12,9 +12,12 @@ const MAX_CAMPAIGNS: usize = 100;
 /// The answers of a campaign as they come; `None` before the first one.
 pub(super) type Answers = watch::Receiver<Option<Arc<Followed>>>;
 
+/// The other end of [`Answers`].
+type Campaign = watch::Sender<Option<Arc<Followed>>>;
+
 /// The last answer of each campaign by its calibration, in memory alone.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Campaigns(Arc<Mutex<BTreeMap<i64, watch::Sender<Option<Arc<Followed>>>>>>);
+pub(super) struct Campaigns(Arc<Mutex<BTreeMap<i64, Campaign>>>);
 
 impl Campaigns {
     /// Tells an answer to those who wait, and remembers it.
@@ -28,7 +31,7 @@ impl Campaigns {
         self.with(id, watch::Sender::subscribe)
     }
 
-    fn with<T>(&self, id: i64, act: impl FnOnce(&watch::Sender<Option<Arc<Followed>>>) -> T) -> T {
+    fn with<T>(&self, id: i64, act: impl FnOnce(&Campaign) -> T) -> T {
         let mut campaigns = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if campaigns.len() >= MAX_CAMPAIGNS {
             // Nobody waits for these.
