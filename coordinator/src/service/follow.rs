@@ -25,8 +25,8 @@ use record::Discovery;
 use result::{FinishedCalibration, Outcome as Found, Study};
 use search::{RunningDiscovery, SearchModels};
 
-/// Largest number of evaluations of a search by models in steady motion, where the request states none: some ten times those of
-/// `examples/hidden-effect`.
+/// Largest number of evaluations of a search by models in steady motion, where the request states none: some three times those of the
+/// searches of `examples/cmu-sand/all-runs.toml`, which take 27,000 to 30,000.
 const STEADY_EVALUATIONS: usize = 100_000;
 /// The same of a search by any other model: minutes.
 const SLOW_EVALUATIONS: usize = 2_000;
