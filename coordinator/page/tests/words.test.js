@@ -90,7 +90,7 @@ test("the ends of a level have the digits that tell them apart", () => {
   assert.equal(levelWords({ low: 21.3, high: 26.6 }, "N"), "21 to 27 N");
   assert.equal(levelWords({ low: 135.8, high: 144.2 }, "N"), "136 to 144 N");
   assert.equal(levelWords({ low: 0.0199, high: 0.01991 }, "mm/s", 1000), "19.9 mm/s");
-  assert.equal(levelWords({ low: 0.007, high: 0.0071 }, "mm/s", 1000), "7.05 mm/s");
+  assert.equal(levelWords({ low: 0.007, high: 0.0071 }, "mm/s", 1000), "≈ 7.05 mm/s");
 });
 
 test("runs are grouped by the speed that the rig holds", () => {

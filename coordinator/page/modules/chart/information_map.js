@@ -24,15 +24,25 @@ export function InformationMap({ record, name }) {
   const max = Math.max(...runs.map((/** @type {any} */ r) => r.nats), 1e-6);
   const hasNegative = runs.some((/** @type {any} */ r) => r.nats < 0);
   const draw = (/** @type {number} */ k) => (/** @type {number} */ width) => {
-    const own = runs.filter((/** @type {any} */ r) => levelOf(speeds, rimSpeed(r)) === k);
-    const next = record.next_runs.map((/** @type {any} */ r, /** @type {number} */ n) => ({ ...r, n: n + 1 })).filter((/** @type {any} */ r) => own.some((/** @type {any} */ o) => isSame(o, r)));
+    const ofSpeed = runs.filter((/** @type {any} */ r) => levelOf(speeds, rimSpeed(r)) === k);
+    const isOfSpeed = (/** @type {any} */ run) => ofSpeed.some((/** @type {any} */ other) => isSame(other, run));
+    const next = record.next_runs.map((/** @type {any} */ r, /** @type {number} */ n) => ({ ...r, n: n + 1 })).filter(isOfSpeed);
+    const slipWord = (/** @type {number} */ slip) => minus(Number((slip * slipUnit.scale).toPrecision(3)));
+    const loadWord = (/** @type {number} */ load) => digits(load * shown("N").scale);
+    const told = (/** @type {any} */ r) => [natsWords(r.nats), conditionWords(r)].join("; ");
     return Plot.plot({
       width, height: 210, marginTop: 26, marginLeft: 60, marginBottom: 40, style: STYLE,
-      x: { label: titled(t`slip`, slipUnit.unit), labelArrow: "none", labelAnchor: "center", type: "band", tickFormat: (/** @type {number} */ v) => minus(Number((v * slipUnit.scale).toPrecision(3))) },
-      y: { label: titled(t`wheel load`, shown("N").unit), tickFormat: (/** @type {number} */ v) => digits(v * shown("N").scale), labelArrow: "none", type: "band", reverse: true },
-      color: { type: "linear", domain: [0, max], clamp: true, range: ["var(--panel)", "var(--accent)"], interpolate: /** @type {any} */ ((/** @type {string} */ a, /** @type {string} */ b) => (/** @type {number} */ t) => `color-mix(in srgb, ${b} ${(100 * t).toFixed(1)}%, ${a})`) },
+      x: { label: titled(t`slip`, slipUnit.unit), labelArrow: "none", labelAnchor: "center", type: "band", tickFormat: slipWord },
+      y: { label: titled(t`wheel load`, shown("N").unit), tickFormat: loadWord, labelArrow: "none", type: "band", reverse: true },
+      color: {
+        type: "linear", domain: [0, max], clamp: true, range: ["var(--panel)", "var(--accent)"],
+        interpolate: /** @type {any} */ ((/** @type {string} */ from, /** @type {string} */ to) =>
+          (/** @type {number} */ share) => `color-mix(in srgb, ${to} ${(100 * share).toFixed(1)}%, ${from})`),
+      },
       marks: [
-        Plot.cell(own, { x: "slip", y: "wheel_load_n", fill: (/** @type {any} */ r) => shownNats(r.nats), inset: 0.5, title: (/** @type {any} */ r) => [natsWords(r.nats), conditionWords(r)].join("; ") }),
+        Plot.cell(ofSpeed, {
+          x: "slip", y: "wheel_load_n", fill: (/** @type {any} */ r) => shownNats(r.nats), inset: 0.5, title: told,
+        }),
         Plot.dot(next, { x: "slip", y: "wheel_load_n", r: 10, fill: "var(--paper)", stroke: "currentColor" }),
         Plot.text(next, { x: "slip", y: "wheel_load_n", text: "n", fontWeight: "bold", fill: "currentColor" }),
       ],
@@ -63,5 +73,7 @@ export function separatedWords(/** @type {string[]} */ separates) {
 function ProposedRuns(/** @type {{ record: any }} */ { record }) {
   if (record.next_runs.length === 0) return null;
   return html`<ol>${record.next_runs.map((/** @type {any} */ r, /** @type {number} */ k) => html`
-    <li>${conditionWords(r)} (${t`rim ${speedWords(rimSpeed(r))}`}): ${k === 0 ? t`tells ${digits(r.information_nats, 2)} nats` : t`adds ${digits(r.information_nats, 2)} nats`}; ${t`it separates ${separatedWords(r.separates)}`}</li>`)}</ol>`;
+    <li>${conditionWords(r)} (${t`rim ${speedWords(rimSpeed(r))}`}):${" "}
+      ${k === 0 ? t`tells ${digits(r.information_nats, 2)} nats` : t`adds ${digits(r.information_nats, 2)} nats`};${" "}
+      ${t`it separates ${separatedWords(r.separates)}`}</li>`)}</ol>`;
 }

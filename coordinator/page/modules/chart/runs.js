@@ -35,7 +35,8 @@ export function byRun(data, options, isMany = false) {
 }
 
 /** The run of the mark under the pointer. */
-const runAt = (/** @type {SVGSVGElement} */ plot, /** @type {MouseEvent} */ event) => /** @type {SVGElement} */ (event.target).dataset?.run ?? mergedRunAt(plot, event);
+const runAt = (/** @type {SVGSVGElement} */ plot, /** @type {MouseEvent} */ event) =>
+  /** @type {SVGElement} */ (event.target).dataset?.run ?? mergedRunAt(plot, event);
 
 /**
  * Lets a picture be pointed at: a mark lights its run, a click chooses it, a drag along x chooses all runs of a region.

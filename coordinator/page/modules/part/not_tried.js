@@ -18,7 +18,11 @@ export function NotTried({ record }) {
     same.names.push(name);
     untried.set(`${why} ${needs}`, same);
   }
-  const lists = [[t`too weak to be seen with these data at usual strength`, record.cannot_exclude], [t`refused by the model at every strength`, record.refused], [t`no longer improves the evidence`, record.drop]];
+  const lists = [
+    [t`too weak to be seen with these data at usual strength`, record.cannot_exclude],
+    [t`refused by the model at every strength`, record.refused],
+    [t`no longer improves the evidence`, record.drop],
+  ];
   return html`
     ${untried.size > 0 && html`<h2>Cannot be judged, as the experiment is described</h2>
       <ul>${[...untried.values()].map((same) => html`<li><b>${folded(same.names).join(", ")}</b>: ${raised(same.why)}.${" "}

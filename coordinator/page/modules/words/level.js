@@ -75,10 +75,10 @@ function apartness(/** @type {Level[]} */ all) {
 export const levelOf = (/** @type {Level[]} */ all, /** @type {number} */ value) =>
   all.findIndex(({ low, high }) => value >= low && value <= high);
 
-/** `60 N`, `21 to 27 N`: with a digit more where two do not tell the ends apart; readings of one setting have one value. */
+/** `60 N`, `21 to 27 N`: with a digit more where two do not tell the ends apart; `≈ 14.1 mm/s` of scatter about one setting. */
 export function levelWords(/** @type {{ low: number, high: number }} */ { low, high }, /** @type {string} */ unit, scale = 1) {
   const rounded = (/** @type {number} */ value, /** @type {number} */ count) => String(Number((value * scale).toPrecision(count)));
-  if (high - low <= READING * high) return `${rounded((low + high) / 2, 3)} ${unit}`;
+  if (high - low <= SCATTER * high) return `${high - low <= EQUAL * high ? "" : "≈ "}${rounded((low + high) / 2, 3)} ${unit}`;
   const step = 10 ** (Math.floor(Math.log10(high)) - 1);
   return `${[low, high].map((value) => rounded(value, high - low < step ? 3 : 2)).join(t` to `)} ${unit}`;
 }

@@ -3,7 +3,7 @@
 //! # Layout
 //! - `wrong`: the errors, worst first. `pattern`: the conditions at which they are largest.
 //! - `missing`: the verdict of the search; `added`: effects that the study added before. `explanation`: explanations in words.
-//! - `next`: the next steps with their commands. `rig`: what the rig did, for a study.
+//! - `next`: the next steps with their commands; `statement`: what an experiment lacks. `rig`: what the rig did, for a study.
 
 mod added;
 mod explanation;
@@ -11,6 +11,7 @@ mod missing;
 mod next;
 mod pattern;
 mod rig;
+mod statement;
 pub(crate) mod wrong;
 
 use next::Facts;

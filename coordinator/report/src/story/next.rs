@@ -3,9 +3,11 @@
 use std::collections::BTreeSet;
 
 use record::{Discovery, Extension, NextRun, Verdict, effect_of, parts_of};
+use shared::channel::Channel;
 
 use super::added::AddedEffect;
-use super::explanation::run_words;
+use super::explanation::{run_words, split};
+use super::statement::{Statement, statements};
 use crate::story::missing::search_of;
 use result::discovery::effect_file;
 use result::finished_calibration::FinishedCalibration;
@@ -14,6 +16,8 @@ use result::words::number;
 
 /// File name in the command that exports the draws.
 const POSTERIOR: &str = "posterior.csv";
+/// What separates a test without a rolling wheel from the place of its result.
+const RESULT: &str = ". Its result goes under ";
 /// Maximum number of explanations that a step names; more are counted.
 const EXPLANATIONS: usize = 4;
 
@@ -31,8 +35,11 @@ pub struct Next {
 pub struct NextStep {
     /// Kind of the step.
     pub kind: StepKind,
-    /// What to do, in a sentence.
+    /// What to do, in a sentence without keys of files.
     pub text: String,
+    /// Where the result is stated, with the keys of the files; null if nothing is stated.
+    #[serde(default)]
+    pub detail: Option<String>,
     /// Verb and arguments of the program `coordinator`, without the location of the study; null if no command does the step.
     pub command: Option<String>,
     /// The effect to add.
@@ -83,6 +90,7 @@ impl NextStep {
         NextStep {
             kind,
             text: text.into(),
+            detail: None,
             command,
             effect: None,
             wheel: None,
@@ -170,30 +178,9 @@ fn steps(study: &Study, calibration: &FinishedCalibration, facts: Facts<'_>) -> 
     }
     // Distinguishing an added effect from its rivals comes before all other steps.
     steps.splice(0..0, deciding);
-    let tests = record.other_tests.iter();
-    steps.extend(tests.map(|test| NextStep::new(StepKind::MeasureOther, bench_test(test), None)));
-    let lacking = record.not_tried.iter().filter(|effect| effect.lacks_data());
-    let needs: BTreeSet<(&str, bool)> = lacking
-        .map(|effect| (effect.needs.as_str(), effect.lacks_runs()))
-        .collect();
-    steps.extend(needs.into_iter().map(|(needs, are_runs)| {
-        let lacking = record.not_tried.iter().filter(|effect| effect.needs == needs);
-        let mut names: Vec<String> = lacking.map(|effect| effect.name.clone()).collect();
-        names.dedup();
-        let names = number::list(&names);
-        match are_runs {
-            true => NextStep::new(
-                StepKind::MeasureOther,
-                format!("measure {needs}, so that {names} can be judged"),
-                None,
-            ),
-            false => NextStep::new(
-                StepKind::StateInExperiment,
-                format!("state {needs} in the experiment, so that {names} can be judged"),
-                None,
-            ),
-        }
-    }));
+    steps.extend(record.other_tests.iter().map(|test| bench_test(test)));
+    steps.extend(runs_that_show(record));
+    steps.extend(properties(record));
     if steps.is_empty() {
         steps.push(predict(
             "predict with the posterior, within the errors above: these data show no more",
@@ -203,23 +190,90 @@ fn steps(study: &Study, calibration: &FinishedCalibration, facts: Facts<'_>) -> 
 }
 
 /// Proposes a test without a rolling wheel: `make a tare run: …`, `measure the radius …`.
-fn bench_test(test: &str) -> String {
-    let is_quantity = test.starts_with("the ") || test.starts_with("radius");
-    format!("{} {test}", if is_quantity { "measure" } else { "make a" })
+fn bench_test(test: &str) -> NextStep {
+    let (what, place) = match test.split_once(RESULT) {
+        Some((what, place)) => (what, Some(format!("its result goes under {place}"))),
+        None => (test, None),
+    };
+    let is_quantity = what.starts_with("the ") || what.starts_with("radius");
+    let verb = if is_quantity { "measure" } else { "make a" };
+    NextStep {
+        detail: place,
+        ..NextStep::new(StepKind::MeasureOther, format!("{verb} {what}"), None)
+    }
+}
+
+/// Proposes to measure the runs that would show effects, a step for each kind of run.
+fn runs_that_show(record: &Discovery) -> Vec<NextStep> {
+    let lacking = record.not_tried.iter().filter(|effect| effect.lacks_runs());
+    let kinds: BTreeSet<&str> = lacking.map(|effect| effect.needs.as_str()).collect();
+    let step = |needs: &str| {
+        let of_kind = record.not_tried.iter().filter(|effect| effect.needs == needs);
+        let (effects, names) = effects(of_kind.map(|effect| effect.name.as_str()));
+        NextStep {
+            detail: Some(format!("they would show {names}")),
+            ..NextStep::new(
+                StepKind::MeasureOther,
+                format!("measure {needs}: they would show {effects}"),
+                None,
+            )
+        }
+    };
+    kinds.into_iter().map(step).collect()
+}
+
+/// Proposes to state the properties that effects need, all in one step; `None` if there are none.
+fn properties(record: &Discovery) -> Option<NextStep> {
+    let lacking = record.not_tried.iter();
+    let lacking: Vec<(&str, Vec<Statement>)> = lacking
+        .map(|effect| (effect.name.as_str(), statements(&effect.needs)))
+        .filter(|(_, statements)| !statements.is_empty())
+        .collect();
+    let all: BTreeSet<&Statement> = lacking.iter().flat_map(|(_, statements)| statements).collect();
+    if all.is_empty() {
+        return None;
+    }
+    let words: Vec<String> = all.iter().map(|statement| statement.words.clone()).collect();
+    let places: Vec<&str> = all.iter().map(|statement| statement.place.as_str()).collect();
+    let (effects, names) = effects(lacking.iter().map(|(name, _)| *name));
+    Some(NextStep {
+        detail: Some(format!(
+            "in the experiment: {}; then the search judges {names}",
+            places.join(", ")
+        )),
+        ..NextStep::new(
+            StepKind::StateInExperiment,
+            format!("state {}: the search then judges {effects}", number::list(&words)),
+            None,
+        )
+    })
+}
+
+/// Counts effects, whatever wheel has them, and lists their names.
+fn effects<'a>(names: impl Iterator<Item = &'a str>) -> (String, String) {
+    let names: BTreeSet<String> = names.map(|name| split(name).0.to_owned()).collect();
+    let names: Vec<String> = names.into_iter().collect();
+    (number::count(names.len(), "further effect"), number::list(&names))
 }
 
 /// Proposes to state or measure the noise of channels whose inferred noise supports no claim; `None` if there are none.
 fn noise(record: &Discovery) -> Option<NextStep> {
-    let channels = record.unsupported_noise.iter();
-    let channels: Vec<String> = channels
-        .map(|name| name.trim_start_matches("noise.").to_owned())
-        .collect();
-    (!channels.is_empty()).then(|| {
-        let text = format!(
-            "state the sd of {} under [noise] in the experiment, or repeat at least three runs, and calibrate and search again",
-            number::list(&channels)
-        );
-        NextStep::new(StepKind::StateInExperiment, text, None)
+    let keys = record.unsupported_noise.iter();
+    let keys: Vec<&str> = keys.map(|name| name.trim_start_matches("noise.")).collect();
+    let words = |key: &&str| match Channel::ALL.iter().find(|channel| channel.column() == *key) {
+        Some(channel) => channel.words().to_owned(),
+        None => (*key).to_owned(),
+    };
+    (!keys.is_empty()).then(|| NextStep {
+        detail: Some(format!("in the experiment: {} under [noise]", keys.join(", "))),
+        ..NextStep::new(
+            StepKind::StateInExperiment,
+            format!(
+                "state the noise (the sd of one measurement) of {}, or repeat at least three runs, and calibrate and search again",
+                number::list(&keys.iter().map(words).collect::<Vec<String>>())
+            ),
+            None,
+        )
     })
 }
 
@@ -412,7 +466,7 @@ mod tests {
         );
         assert!(
             next.text
-                .starts_with("state the sd of torque_n_m and sinkage_m under [noise]"),
+                .starts_with("state the noise (the sd of one measurement) of torque and sinkage, or"),
             "{}",
             next.text
         );
@@ -469,7 +523,43 @@ mod tests {
         }];
         let next = next(&study, closed());
         assert_eq!(kinds(&next), [StepKind::Predict, StepKind::StateInExperiment]);
-        assert!(next.steps[1].text.contains("bin_length_m under [rig]"));
+        assert_eq!(
+            next.steps[1].text,
+            "state the length of the bin: the search then judges 1 further effect"
+        );
+        assert_eq!(
+            next.steps[1].detail.as_deref(),
+            Some("in the experiment: bin_length_m under [rig]; then the search judges end_wall")
+        );
+    }
+
+    #[test]
+    fn no_step_has_keys_of_files_in_its_sentence() {
+        let mut study = searched();
+        let record = &mut study.rounds[0].record;
+        record.verdict = Verdict::Undecided;
+        record.unsupported_noise = vec!["noise.torque_n_m".into()];
+        record.other_tests = vec![
+            "tare run: move the sled. Its result goes under [priors]: \"sled_tare.tare_n\" = { normal = [VALUE, SD] }"
+                .into(),
+        ];
+        record.not_tried = ["density_kg_m3 under [soil.sand]", "bin_length_m under [rig]"]
+            .map(|needs| NotTried {
+                name: "end_wall".into(),
+                why: "it is not stated".into(),
+                needs: needs.into(),
+            })
+            .into();
+        let next = next(&study, open());
+        for step in &next.steps {
+            assert!(!step.text.contains(['[', '=', '{']), "{step:?}");
+        }
+        let stated = next.steps.iter().filter(|step| step.detail.is_some());
+        assert_eq!(stated.count(), 3, "{next:?}");
+        assert_eq!(
+            next.steps[next.steps.len() - 2].detail.as_deref(),
+            Some("its result goes under [priors]: \"sled_tare.tare_n\" = { normal = [VALUE, SD] }")
+        );
     }
 
     #[test]
@@ -487,7 +577,7 @@ mod tests {
             (step.kind, step.text.as_str()),
             (
                 StepKind::MeasureOther,
-                "measure runs at a slip angle, so that side_drag can be judged"
+                "measure runs at a slip angle: they would show 1 further effect"
             )
         );
     }

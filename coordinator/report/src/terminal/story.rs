@@ -5,8 +5,13 @@ use std::path::Path;
 use super::column::{LABEL, labelled_to};
 use super::ending::quoted;
 use crate::story::{NextStep, Story};
+use result::words::number;
 
-/// Returns the story, with the commands of its steps.
+/// Maximum number of steps that are written; more are counted.
+const STEPS: usize = 3;
+
+/// Returns the story, with its first three steps and their commands. The page has all steps, with the keys of the files by which results
+/// are stated.
 ///
 /// # Arguments
 /// - `folder`: the folder of the study, which also contains effect files.
@@ -17,10 +22,15 @@ pub fn story(story: &Story, folder: &Path, width: usize) -> String {
         .iter()
         .map(|(label, sentence)| labelled_to(width, label, sentence))
         .collect();
-    for (number, step) in story.next.steps.iter().enumerate() {
-        let label = if number == 0 { "next:" } else { "  then:" };
+    for (place, step) in story.next.steps.iter().take(STEPS).enumerate() {
+        let label = if place == 0 { "next:" } else { "  then:" };
         text += &labelled_to(width, label, &step.text);
         text += &command_line(step, folder);
+    }
+    let later = story.next.steps.len().saturating_sub(STEPS);
+    if later > 0 {
+        let counted = format!("{} on the page", number::count(later, "more step"));
+        text += &labelled_to(width, "", &counted);
     }
     text
 }
@@ -87,6 +97,19 @@ mod tests {
         let wide = printed(&searched(), 120);
         assert!(wide.lines().any(|line| line.chars().count() > 80), "{wide}");
         assert!(text.contains("make a plate test"), "{text}");
+    }
+
+    #[test]
+    fn three_steps_are_written_and_the_others_counted() {
+        let mut study = searched();
+        let tests = ["tare run", "free-spin run", "ring-shear test"].map(str::to_owned);
+        study.rounds[0].record.other_tests = tests.into();
+        let text = printed(&study, 80);
+        assert_eq!(
+            text.matches("next:").count() + text.matches("then:").count(),
+            STEPS
+        );
+        assert!(text.ends_with("         2 more steps on the page\n"), "{text}");
     }
 
     #[test]
