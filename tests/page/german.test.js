@@ -132,7 +132,7 @@ test("the result is read in German, and printed on two pages", async () => {
 const ENGLISH = Object.entries(GERMAN).filter(([english, german]) => english !== german && /\p{L}{4}/u.test(english.replace(/\{\d\}/g, "")))
   .map(([english]) => new RegExp(`^${english.replace(/[.*+?^$()|[\]\\]/g, "\\$&").replace(/\{\d\}/g, ".+?").replace(/[{}]/g, "\\$&")}$`, "u"));
 /** Sentences of the service, which stay English, and names as they are written in files. */
-const OF_SERVICE = /^\w+_\w+|\.$|^it changes nothing at|^\d+ fitted runs with/;
+const OF_SERVICE = /^\w+_\w+|^synthetic tests of|\.$|^it changes nothing at|(is|are) not stated; |^\d+ fitted runs with/;
 
 /** Texts and labels that a person sees or hears, with everything unfolded. */
 const textsOfPage = () => page.evaluate(() => {

@@ -213,6 +213,7 @@ export const WORDS = {
   "How the error falls": "Wie der Fehler fällt",
   "In 90 % interval: the intervals are as wide as the error, so this share does not support the model.":
     "Im 90-%-Intervall: Die Intervalle sind so breit wie der Fehler, daher spricht dieser Anteil nicht für das Modell.",
+  "In detail": "Im Einzelnen",
   "in 90 % interval": "im 90-%-Intervall",
   "in every channel (chi-square)": "in jedem Kanal (Chi-Quadrat)",
   "incomplete": "unvollständig",
@@ -514,7 +515,6 @@ export const WORDS = {
   "wheel of run {0}": "Rad der Fahrt {0}",
   "wheel {0}": "Rad {0}",
   "Where it fails": "Wo es versagt",
-  "Where it is stated in the files": "Wo es in den Dateien steht",
   "Where the model refuses parameters": "Wo das Modell Parameter ablehnt",
   "Which model": "Welches Modell",
   "Which runs would tell": "Welche Fahrten entscheiden würden",

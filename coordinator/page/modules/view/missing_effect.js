@@ -87,5 +87,5 @@ export function MissingEffect({ study, model, query, reload }) {
 /** A test without a rolling wheel; where its result is stated in the files is folded. */
 function BenchTest(/** @type {{ text: string }} */ { text }) {
   const { what, place } = benchTest(text);
-  return html`<li>${capital(what)} ${place && html`<details><summary>Where it is stated in the files</summary><span class="note">${place}</span></details>`}</li>`;
+  return html`<li>${capital(what)} ${place && html`<details><summary>In detail</summary><span class="note">${place}</span></details>`}</li>`;
 }

@@ -109,5 +109,5 @@ function Step(/** @type {{ step: any, study: any, model: any, reload?: () => voi
   const call = button ? html`<span class="actions">${button()}</span>`
     : step.command && html`<code>coordinator ${step.command}${isReport ? " --out ." : ""}</code>`;
   return html`${sentence(step.text)} ${step.detail && html`<details>
-    <summary>Where it is stated in the files</summary><span class="note">${sentence(step.detail)}</span></details>`}${call}<${Failure} error=${failure} />`;
+    <summary>In detail</summary><span class="note">${sentence(step.detail)}</span></details>`}${call}<${Failure} error=${failure} />`;
 }

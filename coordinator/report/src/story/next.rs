@@ -179,8 +179,9 @@ fn steps(study: &Study, calibration: &FinishedCalibration, facts: Facts<'_>) -> 
     // Distinguishing an added effect from its rivals comes before all other steps.
     steps.splice(0..0, deciding);
     steps.extend(record.other_tests.iter().map(|test| bench_test(test)));
-    steps.extend(runs_that_show(record));
+    // A statement takes no run.
     steps.extend(properties(record));
+    steps.extend(runs_that_show(record));
     if steps.is_empty() {
         steps.push(predict(
             "predict with the posterior, within the errors above: these data show no more",
