@@ -11,7 +11,7 @@ import { levels, levelWords } from "../modules/words/level.js";
 import { measuredQuantities, statementOf } from "../modules/words/predicted_quantity.js";
 import { meanAndSpread, parameterTitle, parameterValue, parameterValues, shownParameter } from "../modules/words/parameter.js";
 import { digits, duration, meanAndSd, numberOf, parameterName, probability, raised, shown, size, tickWords, withSd } from "../modules/words/quantity.js";
-import { meanErrorSd, residualSds } from "../modules/words/residual.js";
+import { hasErrorsBesideNoise, meanErrorSd, residualSds } from "../modules/words/residual.js";
 import { progressWords } from "../modules/words/state.js";
 
 test("a number has its significant digits, and an exponent only where it needs one", () => {
@@ -189,11 +189,19 @@ test("a logarithm is shown as its quantity, with a factor for its sd", () => {
 
 test("residuals count in all errors that are assumed, as their band does", () => {
   const row = { measured: -3.9, predicted: -3.5, noise_sd: 0.1, error_sd: 4 };
-  assert.ok(Math.abs(/** @type {number} */ (residualSds(row)) + 0.1) < 1e-12);
-  assert.equal(residualSds({ ...row, predicted: null }), null);
-  assert.equal(residualSds({ ...row, error_sd: null }), null);
-  assert.equal(meanErrorSd([row, { error_sd: 6 }, { error_sd: null }]), 5);
-  assert.equal(meanErrorSd([]), null);
+  assert.ok(Math.abs(/** @type {number} */ (residualSds(row, "all")) + 0.1) < 1e-12);
+  assert.equal(residualSds({ ...row, predicted: null }, "all"), null);
+  assert.equal(residualSds({ ...row, error_sd: null }, "all"), null);
+  assert.equal(meanErrorSd([row, { error_sd: 6 }, { error_sd: null }], "all"), 5);
+  assert.equal(meanErrorSd([], "all"), null);
+});
+
+test("residuals count in the noise alone where the reader asks for it, and nobody is asked where noise is all", () => {
+  const row = { measured: -3.9, predicted: -3.5, noise_sd: 0.1, error_sd: 4 };
+  assert.ok(Math.abs(/** @type {number} */ (residualSds(row, "noise")) + 4) < 1e-12);
+  assert.equal(meanErrorSd([row, { noise_sd: 0.3, error_sd: 6 }], "noise"), 0.2);
+  assert.ok(hasErrorsBesideNoise([row]));
+  assert.ok(!hasErrorsBesideNoise([{ noise_sd: 0.1, error_sd: 0.1 }, { noise_sd: null, error_sd: null }]));
 });
 
 test("a typed number has a point or a comma", () => {

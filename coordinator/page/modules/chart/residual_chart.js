@@ -15,8 +15,8 @@ import { byRun, pointable } from "./runs.js";
 const AGAINST = /** @type {Record<string, string>} */ ({ slip: "slip", wheel_load_n: "wheel_load", sled_speed_m_s: "sled_speed", place: "order" });
 const LEVEL = 0.01;
 
-/** @param {{ channel: string, rows: any[], axis: any, trends: any[], name: string }} properties */
-export function ResidualChart({ channel, rows, axis, trends, name }) {
+/** @param {{ channel: string, rows: any[], axis: any, errors: "all" | "noise", trends: any[], name: string }} properties */
+export function ResidualChart({ channel, rows, axis, errors, trends, name }) {
   const isMany = rows.length > MANY;
   const judged = rows.filter((r) => r.predicted !== null && r.predicted !== undefined);
   const quantity = shown(rows[0].unit);
@@ -25,7 +25,7 @@ export function ResidualChart({ channel, rows, axis, trends, name }) {
   const wheels = [...new Set(rows.map((r) => r.wheel))];
   const trend = trends.find((one) => one.channel === channel && one.against === AGAINST[axis.key]);
   const isBeyond = trend && trend.p * trends.length < LEVEL;
-  const mean = meanErrorSd(judged);
+  const mean = meanErrorSd(judged, errors);
   const sd = mean === null ? null : mean * quantity.scale;
   const line = isBeyond ? trendLine(judged.filter((r) => r.use !== "holdout"), trend, x, y, quantity.scale) : [];
   // The words are made of the run that is pointed at alone.
@@ -50,7 +50,7 @@ export function ResidualChart({ channel, rows, axis, trends, name }) {
     ? t`trend: ${minus(digits(trend.change * quantity.scale))} ${quantity.unit} from one end to the other, before the fit compensates`
     : trend ? t`no trend beyond chance` : "";
   return html`<${Figure} title=${t`Residuals of ${channelName(channel)} against ${axis.title}`} note=${note} name=${fileName(name, "residuals", channel, axis.short)}
-    deps=${[rows, axis.key, trend]} draw=${draw}
+    deps=${[rows, axis.key, errors, trend]} draw=${draw}
     rows=${() => judged.map((r) => ({ run: r.run, use: r.use, wheel: r.wheel, [axis.key]: r[axis.key], [`residual [${quantity.unit}]`]: y(r) }))}
     onDrawn=${(/** @type {any} */ plot) => pointable(plot, { runsIn, words: (from, to) => spanWords(axis, from, to) })}
     legend=${wheels.length > 1 && wheels.map((wheel, k) => html`<span><i class="swatch" style=${{ background: colour(k) }}></i>wheel ${wheel}</span>`)} />`;

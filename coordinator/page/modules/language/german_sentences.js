@@ -72,8 +72,15 @@ export const SENTENCES = {
   "limits of {0}: two numbers, the smaller first": "Grenzen von {0}: zwei Zahlen, die kleinere zuerst",
   "Mahalanobis distance {0} from the posterior mean; 99 % of the draws lie within {1}.":
     "Mahalanobis-Abstand {0} vom Mittel des Posteriors; 99 % der Ziehungen liegen innerhalb von {1}.",
-  "Measured less computed; the grey band is one sd, the mean over the runs, of all errors that the calibration assumes or infers: noise, scatter of the soil and discrepancy, as in the diagnosis. The line is the trend that the diagnosis tests, where it is beyond chance (p below 0.01 among all tests).":
-    "Gemessen minus berechnet; das graue Band ist eine Standardabweichung, im Mittel über die Fahrten, aller Fehler, die die Kalibrierung annimmt oder schätzt: Rauschen, Streuung des Bodens und Diskrepanz, wie in der Diagnose. Die Linie ist der Trend, den die Diagnose prüft, wo er über Zufall hinausgeht (p unter 0.01 unter allen Prüfungen).",
+  "Measured less computed; the grey band is one sd, the mean over the runs, of all errors that the calibration assumes or infers: noise, scatter of the soil and discrepancy, as in the diagnosis.":
+    "Gemessen minus berechnet; das graue Band ist eine Standardabweichung, im Mittel über die Fahrten, aller Fehler, die die Kalibrierung annimmt oder schätzt: Rauschen, Streuung des Bodens und Diskrepanz, wie in der Diagnose.",
+  "Measured less computed; the grey band is one sd, the mean over the runs, of the noise alone.":
+    "Gemessen minus berechnet; das graue Band ist eine Standardabweichung des Rauschens allein, im Mittel über die Fahrten.",
+  "The line is the trend that the diagnosis tests, where it is beyond chance (p below 0.01 among all tests).":
+    "Die Linie ist der Trend, den die Diagnose prüft, wo er über Zufall hinausgeht (p unter 0.01 unter allen Prüfungen).",
+  "Errors that residuals count in": "Fehler, in denen Abweichungen zählen",
+  "all errors": "alle Fehler",
+  "the noise alone": "das Rauschen allein",
   "Nats: log evidence over that of the model as it is. Bold lines are in the 95 % set of explanations. Half of the prior probability is on “nothing is missing”.{0}":
     "Nat: logarithmische Evidenz über der des Modells, wie es ist. Fette Zeilen gehören zur 95-%-Menge der Erklärungen. Die Hälfte der Prior-Wahrscheinlichkeit liegt auf „nichts fehlt“.{0}",
   "No calibration of this study is finished yet.": "Noch ist keine Kalibrierung dieser Studie fertig.",
@@ -101,6 +108,8 @@ export const SENTENCES = {
   "Probabilities compare these {0} models alone, from equal prior odds. {1}. Noise sds: error over the noise; a model that is right has about 1. p of chi-square: how often noise alone leaves so large residuals of the fitted runs; if that of the most probable model is below 0.01, the answer is “none of these”.":
     "Die Wahrscheinlichkeiten vergleichen nur diese {0} Modelle, von gleichen Prior-Chancen aus. {1}. × Rauschen: Fehler durch Rauschen; ein richtiges Modell hat etwa 1. p von Chi-Quadrat: wie oft Rauschen allein so große Abweichungen der angepassten Fahrten lässt; liegt es beim wahrscheinlichsten Modell unter 0.01, ist die Antwort „keines von diesen“.",
   "regions of {0} % of the posterior; rank correlation {1}": "Gebiete von {0} % des Posteriors; Rangkorrelation {1}",
+  "Residuals of every run and channel, in sds of the noise alone":
+    "Abweichungen jeder Fahrt und jedes Kanals, in Standardabweichungen des Rauschens allein",
   "Residuals of every run and channel, in sds of noise, scatter of the soil and discrepancy":
     "Abweichungen jeder Fahrt und jedes Kanals, in Standardabweichungen von Rauschen, Streuung des Bodens und Diskrepanz",
   "Root mean square errors in the unit of each channel. Held-out runs are never fitted.":

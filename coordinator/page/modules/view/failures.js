@@ -16,7 +16,7 @@ import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { conditionWords, runName } from "../words/condition.js";
 import { capital, CHANNELS, minus, raised, short } from "../words/quantity.js";
-import { residualSds } from "../words/residual.js";
+import { hasErrorsBesideNoise, residualSds } from "../words/residual.js";
 
 /** Number of sds beyond which residuals have one colour. */
 const MOST_SDS = 4;
@@ -32,6 +32,7 @@ export function Failures({ study, model }) {
   const { answer: comparison, error } = useAnswer(model ? path.comparison(model.id) : null);
   const { answer: diagnostics } = useAnswer(model ? path.diagnostics(model.id) : null);
   const [order, setOrder] = useState("slip");
+  const [errors, setErrors] = useState(/** @type {"all" | "noise"} */ ("all"));
   const rows = useMemo(() => withPlace(comparison?.rows ?? []), [comparison]);
   const ofChannel = useMemo(() => CHANNELS.map((channel) => ({ channel, own: rows.filter((r) => r.channel === channel) })).filter(({ own }) => own.length > 0), [rows]);
   if (!model) return html`<${NoModel} study=${study} />`;
@@ -46,15 +47,27 @@ export function Failures({ study, model }) {
       <span class="note">Ordered by</span>
       ${orders.map((o) => html`<button type="button" aria-pressed=${o.key === order} onClick=${() => setOrder(o.key)}>${o.title}</button>`)}
     </div>
-    <${HeatMap} rows=${rows} order=${order} name=${study.name} />
+    ${hasErrorsBesideNoise(rows) && html`
+      <div class="actions" role="group" aria-label=${t`Errors that residuals count in`}>
+        <span class="note">${t`Errors that residuals count in`}</span>
+        ${Object.entries(ERRORS).map(([key, words]) => html`
+          <button type="button" aria-pressed=${key === errors} onClick=${() => setErrors(key)}>${words}</button>`)}
+      </div>`}
+    <${HeatMap} rows=${rows} order=${order} errors=${errors} name=${study.name} />
     <h2>Residuals against ${axis.title}</h2>
-    <p class="note">Measured less computed; the grey band is one sd, the mean over the runs, of all errors that the calibration assumes or infers: noise, scatter of the soil and discrepancy, as in the diagnosis. The line is the trend that the diagnosis tests, where it is beyond chance (p below 0.01 among all tests).</p>
+    <p class="note">${errors === "all"
+      ? t`Measured less computed; the grey band is one sd, the mean over the runs, of all errors that the calibration assumes or infers: noise, scatter of the soil and discrepancy, as in the diagnosis.`
+      : t`Measured less computed; the grey band is one sd, the mean over the runs, of the noise alone.`}
+      ${" "}${t`The line is the trend that the diagnosis tests, where it is beyond chance (p below 0.01 among all tests).`}</p>
     <div class="figures">
       ${ofChannel.map(({ channel, own }) => html`
-        <${ResidualChart} key=${channel} channel=${channel} rows=${own} axis=${axis} trends=${diagnostics?.trends ?? []} name=${study.name} />`)}
+        <${ResidualChart} key=${channel} channel=${channel} rows=${own} axis=${axis} errors=${errors} trends=${diagnostics?.trends ?? []} name=${study.name} />`)}
     </div>
     ${findings.length > 0 && html`<h2>What the diagnosis says</h2><ul>${findings.map((/** @type {string} */ text) => html`<li>${capital(raised(text))}</li>`)}</ul>`}`;
 }
+
+/** The errors that residuals may count in. */
+const ERRORS = { all: t`all errors`, noise: t`the noise alone` };
 
 /** The order in which the runs stand in the file. */
 const MADE = { key: "place", title: t`order of the runs`, short: t`runs`, unit: "1", scale: 1 };
@@ -66,8 +79,8 @@ function withPlace(/** @type {any[]} */ rows) {
 }
 
 /** Runs by channels, coloured by the residual over its sd. */
-function HeatMap(/** @type {{ rows: any[], order: string, name: string }} */ { rows, order, name }) {
-  const judged = rows.map((r) => ({ ...r, sds: residualSds(r) })).filter((r) => r.sds !== null);
+function HeatMap(/** @type {{ rows: any[], order: string, errors: "all" | "noise", name: string }} */ { rows, order, errors, name }) {
+  const judged = rows.map((r) => ({ ...r, sds: residualSds(r, errors), all_sds: residualSds(r, "all") })).filter((r) => r.sds !== null);
   /** @type {Map<string, number>} */
   const worst = new Map();
   for (const r of judged) worst.set(r.run, Math.max(worst.get(r.run) ?? 0, Math.abs(r.sds)));
@@ -76,7 +89,7 @@ function HeatMap(/** @type {{ rows: any[], order: string, name: string }} */ { r
   const value = (/** @type {string} */ run) => (order === "size" ? -(worst.get(run) ?? 0) : order === "made" ? first.get(run).place : first.get(run)[order]);
   const values = new Map(runs.map((run) => [run, value(run)]));
   runs.sort((a, b) => values.get(a) - values.get(b) || first.get(a).place - first.get(b).place);
-  const hint = (/** @type {any} */ r) => [runName(r), short(r.channel)].join(", ") + `\n${conditionWords(r)}\n` + (r.sds > 0 ? t`${minus(r.sds.toFixed(1))} sds of all errors, ${minus(r.residual_sigma.toFixed(1))} of the noise alone: measured above computed` : t`${minus(r.sds.toFixed(1))} sds of all errors, ${minus(r.residual_sigma.toFixed(1))} of the noise alone: measured below computed`);
+  const hint = (/** @type {any} */ r) => [runName(r), short(r.channel)].join(", ") + `\n${conditionWords(r)}\n` + (r.sds > 0 ? t`${minus(r.all_sds.toFixed(1))} sds of all errors, ${minus(r.residual_sigma.toFixed(1))} of the noise alone: measured above computed` : t`${minus(r.all_sds.toFixed(1))} sds of all errors, ${minus(r.residual_sigma.toFixed(1))} of the noise alone: measured below computed`);
   const isMany = judged.length > MANY;
   const held = judged.filter((r) => r.use === "holdout");
   const heldLook = { x: "run", y: "channel", fill: "var(--ink)", className: "held" };
@@ -98,8 +111,9 @@ function HeatMap(/** @type {{ rows: any[], order: string, name: string }} */ { r
       })),
     ],
   });
-  return html`<${Figure} title="Residuals of every run and channel, in sds of noise, scatter of the soil and discrepancy" name=${fileName(name, "residuals")} deps=${[rows, order]} draw=${draw}
-    rows=${() => judged.map((r) => ({ run: r.run, use: r.use, channel: r.channel, slip: r.slip, wheel_load_n: r.wheel_load_n, sled_speed_m_s: r.sled_speed_m_s, residual_sds: r.sds, residual_noise_sds: r.residual_sigma }))}
+  return html`<${Figure} title=${errors === "all" ? t`Residuals of every run and channel, in sds of noise, scatter of the soil and discrepancy` : t`Residuals of every run and channel, in sds of the noise alone`}
+    name=${fileName(name, "residuals")} deps=${[rows, order, errors]} draw=${draw}
+    rows=${() => judged.map((r) => ({ run: r.run, use: r.use, channel: r.channel, slip: r.slip, wheel_load_n: r.wheel_load_n, sled_speed_m_s: r.sled_speed_m_s, residual_sds: r.all_sds, residual_noise_sds: r.residual_sigma }))}
     onDrawn=${(/** @type {any} */ plot) => pointable(plot)}
     legend=${html`<span><i class="swatch below"></i>computed too high by ${MOST_SDS} sds or more</span><span><i class="swatch level"></i>as measured</span><span><i class="swatch above"></i>computed too low</span><span>dot: held out</span>`} />`;
 }
