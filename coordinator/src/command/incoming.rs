@@ -11,43 +11,55 @@ use shared::experiment::Experiment;
 use shared::file::FileSet;
 
 use super::output::remark;
+use super::watch::run_names;
 
 /// So long a file must stay as it is before it is read, because whoever writes it may not have ended.
-const STILL: Duration = Duration::from_secs(1);
+const STILL: Duration = Duration::from_secs(5);
+/// Endings of names that tables and recordings have. Other files are left alone.
+const ENDINGS: [&str; 10] = [
+    "csv", "tsv", "txt", "dat", "xlsx", "xlsm", "xls", "ods", "mat", "bag",
+];
 /// The folder within for files that have a mistake.
 const REFUSED: &str = "refused";
 /// Name of the experiment in messages.
 const EXPERIMENT: &str = "experiment.toml";
 
-/// How a file looked, and since when.
-#[derive(Debug, Clone)]
-struct Seen {
-    bytes: u64,
-    modified: Option<SystemTime>,
-    since: Instant,
-}
+/// How a file looks: its size `[B]`, and when it was written.
+type Look = (u64, Option<SystemTime>);
 
-/// A folder into which files are dropped. Each is read once, when it has stayed as it is for a second.
+/// A folder into which files are dropped. Each is read once, when it has stayed as it is for some seconds.
 #[derive(Debug)]
 pub(super) struct Incoming {
     folder: PathBuf,
     /// Name and text of the map of recordings.
     map: Option<(String, String)>,
+    /// The runs of the study.
+    runs: BTreeSet<String>,
     /// The experiment with the rows of all files so far.
     experiment: FileSet,
-    seen: BTreeMap<PathBuf, Seen>,
-    taken: BTreeSet<PathBuf>,
+    /// How a file looked, and since when.
+    seen: BTreeMap<PathBuf, (Look, Instant)>,
+    /// The files that are done with, as they looked then.
+    taken: BTreeMap<PathBuf, Look>,
 }
 
 impl Incoming {
-    pub(super) fn new(folder: &Path, map: Option<(String, String)>, experiment: FileSet) -> Self {
-        Incoming {
+    /// # Errors
+    /// The experiment is not valid.
+    pub(super) fn new(
+        folder: &Path,
+        map: Option<(String, String)>,
+        experiment: FileSet,
+    ) -> anyhow::Result<Self> {
+        let parsed = Experiment::parse(EXPERIMENT, &experiment)?;
+        Ok(Incoming {
             folder: folder.to_owned(),
             map,
+            runs: parsed.runs.into_iter().map(|run| run.name).collect(),
             experiment,
             seen: BTreeMap::new(),
-            taken: BTreeSet::new(),
-        }
+            taken: BTreeMap::new(),
+        })
     }
 
     /// Takes the files that have stayed as they are, in the order of their names. Those that have a mistake are said and set apart.
@@ -56,21 +68,28 @@ impl Incoming {
     /// Whether a file may still be written.
     ///
     /// # Errors
-    /// The folder cannot be read, or a file not be set apart.
+    /// The folder cannot be read.
     pub(super) fn take(&mut self, now: Instant) -> anyhow::Result<bool> {
         let mut is_waiting = false;
-        for path in self.files()? {
-            if !self.is_still(&path, now) {
+        for (path, look) in self.files()? {
+            if let Some(before) = self.taken.get_mut(&path) {
+                if *before != look {
+                    *before = look;
+                    let changed = "it was changed after it was read, and counts as it was: drop corrected runs under another name";
+                    remark("note:", &format!("{}: {changed}", path.display()));
+                }
+                continue;
+            }
+            if !self.is_still(&path, look, now) {
                 is_waiting = true;
                 continue;
             }
             self.seen.remove(&path);
+            self.taken.insert(path.clone(), look);
             match self.rows(&path) {
-                Ok(enlarged) => {
-                    self.experiment = enlarged;
-                    self.taken.insert(path);
-                }
-                Err(mistakes) => self.refuse(&path, &mistakes)?,
+                Ok(Some(enlarged)) => self.experiment = enlarged,
+                Ok(None) => {}
+                Err(mistakes) => self.refuse(&path, &mistakes),
             }
         }
         Ok(is_waiting)
@@ -82,19 +101,28 @@ impl Incoming {
         Ok(self.experiment.named(EXPERIMENT, &named)?)
     }
 
-    /// Returns the files that were not taken yet, in order. Hidden files and those that programs write under a passing name are none.
-    fn files(&self) -> anyhow::Result<Vec<PathBuf>> {
+    /// Returns the tables and recordings in the folder, in order, as they look. The map, links, hidden files and those that programs write
+    /// under a passing name are none.
+    fn files(&self) -> anyhow::Result<Vec<(PathBuf, Look)>> {
         let name = || self.folder.display().to_string();
         let mut files = Vec::new();
         for entry in self.folder.read_dir().with_context(name)? {
             let path = entry.with_context(name)?.path();
             let file = path.file_name().unwrap_or_default().to_string_lossy();
-            let is_passing = file.starts_with('.')
-                || [".part", ".tmp", ".txt~", "~"]
-                    .iter()
-                    .any(|end| file.ends_with(end));
-            if !is_passing && path.is_file() && !self.taken.contains(&path) {
-                files.push(path);
+            let is_passing = file.starts_with(['.', '~']);
+            let ending = path
+                .extension()
+                .map(|ending| ending.to_string_lossy().to_lowercase());
+            let is_table = ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str()));
+            let is_map = self.map.as_ref().is_some_and(|(map, _)| Path::new(map) == path);
+            // A file may be gone by now.
+            let metadata = path.symlink_metadata().ok().filter(|m| m.is_file());
+            if let Some(metadata) = metadata
+                && is_table
+                && !is_passing
+                && !is_map
+            {
+                files.push((path, (metadata.len(), metadata.modified().ok())));
             }
         }
         files.sort();
@@ -102,40 +130,34 @@ impl Incoming {
     }
 
     /// Returns whether a file has not changed for a time.
-    fn is_still(&mut self, path: &Path, now: Instant) -> bool {
-        let Ok(metadata) = path.metadata() else {
-            return false;
-        };
-        let (bytes, modified) = (metadata.len(), metadata.modified().ok());
-        let fresh = Seen {
-            bytes,
-            modified,
-            since: now,
-        };
-        let seen = self.seen.entry(path.to_owned()).or_insert_with(|| fresh.clone());
-        if (seen.bytes, seen.modified) != (bytes, modified) {
-            *seen = fresh;
+    fn is_still(&mut self, path: &Path, look: Look, now: Instant) -> bool {
+        let seen = self.seen.entry(path.to_owned()).or_insert((look, now));
+        if seen.0 != look {
+            *seen = (look, now);
         }
-        now.duration_since(seen.since) >= STILL
+        now.duration_since(seen.1) >= STILL
     }
 
-    /// Returns the experiment with the rows of a file.
+    /// Returns the experiment with the rows of a file; `None` where the study has all of its runs, as after a calibration with them.
     ///
     /// # Errors
     /// The mistakes of the file, each with its line.
-    fn rows(&self, path: &Path) -> Result<FileSet, Vec<String>> {
+    fn rows(&self, path: &Path) -> Result<Option<FileSet>, Vec<String>> {
         let name = path.display().to_string();
         let bytes = std::fs::read(path).map_err(|e| vec![format!("{name}: {e}")])?;
         let rows = match String::from_utf8(bytes) {
             Ok(text) if is_of_runs(&text) => text,
             _ => self.converted(&name)?,
         };
+        if run_names(&rows, path).is_ok_and(|names| !names.is_empty() && names.is_subset(&self.runs)) {
+            return Ok(None);
+        }
         let (enlarged, _) =
             Experiment::with_runs(EXPERIMENT, &self.experiment, &rows).map_err(|mut error| {
                 error.file.clone_from(&name);
                 vec![error.to_string()]
             })?;
-        Ok(enlarged)
+        Ok(Some(enlarged))
     }
 
     /// Converts a recording or a table by the map.
@@ -161,8 +183,25 @@ impl Incoming {
         }
     }
 
-    /// Says the mistakes of a file and sets it apart, with a text that states them.
-    fn refuse(&self, path: &Path, mistakes: &[String]) -> anyhow::Result<()> {
+    /// Says the mistakes of a file and sets it apart. A file that cannot be moved stays where it is.
+    fn refuse(&self, path: &Path, mistakes: &[String]) {
+        for mistake in mistakes {
+            remark("error:", mistake);
+        }
+        match self.set_apart(path, mistakes) {
+            Ok(place) => remark(
+                "note:",
+                &format!("{} is set apart as {}", path.display(), place.display()),
+            ),
+            Err(error) => remark(
+                "note:",
+                &format!("{} is not set apart: {error:#}", path.display()),
+            ),
+        }
+    }
+
+    /// Moves a file to those with mistakes, with a text that states them. Returns its new place.
+    fn set_apart(&self, path: &Path, mistakes: &[String]) -> anyhow::Result<PathBuf> {
         let folder = self.folder.join(REFUSED);
         std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
         let file = path
@@ -179,11 +218,7 @@ impl Incoming {
         let text = mistakes.join("\n") + "\n";
         let reason = PathBuf::from(format!("{}.txt", place.display()));
         std::fs::write(&reason, text).with_context(|| reason.display().to_string())?;
-        for mistake in mistakes {
-            remark("error:", mistake);
-        }
-        remark("note:", &format!("{file} is set apart in {}", folder.display()));
-        Ok(())
+        Ok(place)
     }
 }
 
@@ -214,7 +249,7 @@ mod tests {
             toml: TOML.to_owned(),
             files,
         };
-        Incoming::new(folder, map, experiment)
+        Incoming::new(folder, map, experiment).unwrap()
     }
 
     #[test]
@@ -234,6 +269,10 @@ mod tests {
         // It is taken once.
         assert!(!incoming.take(begin + 9 * STILL).unwrap());
         assert_eq!(incoming.table().unwrap().matches("b,w").count(), 1);
+        // What it becomes later is said, and does not count.
+        std::fs::write(&file, format!("{HEADER}b,w,s,0.2,60,0.02,22.0,fit\n")).unwrap();
+        incoming.take(begin + 20 * STILL).unwrap();
+        assert!(incoming.table().unwrap().ends_with("b,w,s,0.2,60,0.02,2.0,fit\n"));
     }
 
     #[test]
@@ -245,7 +284,13 @@ mod tests {
             format!("{HEADER}b,w,s,0.2,60,0.02,2.0,fit\nc,w,s,1.4,60,0.02,2.0,fit\n"),
         );
         write("d.csv", format!("{HEADER}d,w,s,0.3,60,0.02,2.0,fit\n"));
-        write("again.csv", format!("{HEADER}a,w,s,0.3,60,0.02,2.0,fit\n"));
+        write(
+            "again.csv",
+            format!("{HEADER}a,w,s,0.3,60,0.02,2.0,fit\ne,w,s,0.3,60,0.02,2.0,fit\n"),
+        );
+        // A file of before the last calibration, and what is no table.
+        write("before.csv", format!("{HEADER}a,w,s,0.1,60,0.02,1.0,fit\n"));
+        write("rig.pdf", "%PDF".to_owned());
         write("notes.csv", "day,weather\n1,rain\n".to_owned());
         write(".hidden.csv", "day\n1\n".to_owned());
         let mut incoming = incoming(folder.path(), None);
@@ -269,7 +314,9 @@ mod tests {
         assert!(reason("again.csv").contains("again.csv line 2: run \"a\" is in the study already"));
         assert!(reason("notes.csv").contains("needs --map"));
         assert!(folder.path().join(REFUSED).join("b.csv").exists() && !folder.path().join("b.csv").exists());
-        assert!(folder.path().join(".hidden.csv").exists());
+        for name in [".hidden.csv", "before.csv", "rig.pdf", "d.csv"] {
+            assert!(folder.path().join(name).exists(), "{name}");
+        }
     }
 
     #[test]

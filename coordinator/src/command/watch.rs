@@ -86,7 +86,7 @@ impl Rows {
             .map(|map| -> anyhow::Result<_> { Ok((map.display().to_string(), read_text(map)?)) });
         let map = map.transpose()?;
         if config.runs.is_dir() {
-            return Ok(Rows::Folder(Incoming::new(&config.runs, map, experiment)));
+            return Ok(Rows::Folder(Incoming::new(&config.runs, map, experiment)?));
         }
         ensure!(
             map.is_none(),
@@ -146,7 +146,7 @@ impl Watch {
 }
 
 /// Returns the names of the runs of a table.
-fn run_names(text: &str, path: &Path) -> anyhow::Result<BTreeSet<String>> {
+pub(super) fn run_names(text: &str, path: &Path) -> anyhow::Result<BTreeSet<String>> {
     let (mut reader, run) = reader(text, path)?;
     let mut names = BTreeSet::new();
     for record in reader.records() {

@@ -47,7 +47,7 @@ pub(super) async fn pass(
     Ok(answering.through(next.run(request).await))
 }
 
-/// Returns whether a request changes nothing in the store: it reads, or it asks what follows from a calibration.
+/// Returns whether a request changes no study: it reads, which may keep a computed result, or it asks what follows from a calibration.
 fn changes_nothing(method: &Method, path: &str) -> bool {
     [Method::GET, Method::HEAD].contains(method) || method == Method::POST && asks_of_a_calibration(path)
 }

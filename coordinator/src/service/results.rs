@@ -6,6 +6,7 @@ use serde::Deserialize;
 use serde_json::value::RawValue;
 use shared::api::{CalibrationState, NewDecision};
 
+use super::background::in_background;
 use super::error::ServiceError;
 use super::finished_study::{check_finished, finished_calibration, finished_study};
 use super::handle::Service;
@@ -102,9 +103,15 @@ impl Service {
         let is_of_list = matches!(file, StudyFile::Overview | StudyFile::ListItem);
         let is_whole = is_over && file.is_of_every_study() && !self.store().is_read_only();
         // A report has a megabyte of modules, so that it is computed where somebody asks for it.
-        let predictions = match file {
-            StudyFile::Report => carried(&study, decisions),
-            _ => ReportPredictions::default(),
+        let (study, predictions) = match file {
+            StudyFile::Report => {
+                in_background(move || {
+                    let carried = carried(&study, decisions);
+                    Ok::<_, ServiceError>((study, carried))
+                })
+                .await?
+            }
+            _ => (study, ReportPredictions::default()),
         };
         let computed = match () {
             () if is_whole => files(&study),

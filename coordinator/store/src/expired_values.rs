@@ -5,12 +5,15 @@ use record::fact::Fact;
 use sqlx::AssertSqlSafe;
 
 use super::checksum::EVALUATIONS;
-use super::sql::{Conflict, Connection, Kind, Query, Value, insert, query};
+use super::server;
+use super::sql::{Conflict, Connection, Kind, Query, Value, insert, query, query_as};
 
 /// The number of rows whose values one commit drops. Results of workers wait no longer than for one such commit.
 const PART: i64 = 1000;
+/// The size of the values after which a part ends `[B]`.
+const PART_BYTES: i64 = 16 << 20;
 
-/// The values of a calibration that are still to be dropped. If the program ends before, they stay.
+/// The values of a calibration that are still to be dropped. If the program is killed before, they stay.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct ExpiredValues {
     calibration: i64,
@@ -29,22 +32,65 @@ impl ExpiredValues {
         }
     }
 
-    /// Drops the values of the next rows within the present transaction. Returns whether none is left.
+    /// Drops the values of the next rows in a transaction. Returns whether none is left, or the rest stays.
     ///
-    /// A damaged row keeps its values, because a new checksum would hide the damage. So does a row of before migration 25, which has none.
+    /// The values only take room, so a store that cannot drop them goes on with a warning.
+    ///
+    /// # Errors
+    /// The connection is lost.
     pub(super) async fn drop_part(&mut self, connection: &mut Connection) -> Result<bool, sqlx::Error> {
-        let rows = query(
-            "SELECT * FROM evaluations WHERE calibration = ? AND evaluation >= ? AND evaluation < ? AND checksum IS NOT NULL
+        if let Err(error) = connection.begin().await {
+            tracing::warn!(%error, calibration = self.calibration, "values that nobody needs stay in the store");
+            return Ok(true);
+        }
+        match server::in_time(server::GROUP_TIME, self.shorten_rows(connection)).await {
+            Ok(is_done) => connection.commit().await.map(|()| is_done),
+            Err(error) => {
+                tracing::warn!(%error, calibration = self.calibration, "values that nobody needs stay in the store");
+                connection.rollback().await.map(|()| true)
+            }
+        }
+    }
+
+    /// Returns the last evaluation of the next part; `None` where none is left.
+    async fn end_of_part(&self, connection: &mut Connection) -> Result<Option<i64>, sqlx::Error> {
+        let rows: Vec<(i64, i64)> = query_as(
+            "SELECT evaluation, CAST(coalesce(length(fitted), 0) + coalesce(length(observables), 0) AS BIGINT) FROM evaluations
+             WHERE calibration = ? AND evaluation >= ? AND evaluation < ? AND checksum IS NOT NULL
              AND (length(fitted) > 0 OR observables IS NOT NULL) ORDER BY evaluation LIMIT ?",
         )
         .bind(self.calibration)
         .bind(self.from)
         .bind(PREDICTIONS_FROM as i64)
         .bind(PART)
+        .fetch_all(connection)
+        .await?;
+        let mut bytes = 0;
+        let ends = rows.iter().take_while(|(_, length)| {
+            let fits = bytes < PART_BYTES;
+            bytes += length;
+            fits
+        });
+        Ok(ends.last().map(|(evaluation, _)| *evaluation))
+    }
+
+    /// Drops the values of the next rows. Returns whether none is left.
+    ///
+    /// A damaged row keeps its values, because a new checksum would hide the damage. So does a row of before migration 25, which has none.
+    async fn shorten_rows(&mut self, connection: &mut Connection) -> Result<bool, sqlx::Error> {
+        let Some(last) = self.end_of_part(connection).await? else {
+            return Ok(true);
+        };
+        let rows = query(
+            "SELECT * FROM evaluations WHERE calibration = ? AND evaluation >= ? AND evaluation <= ? AND checksum IS NOT NULL
+             AND (length(fitted) > 0 OR observables IS NOT NULL) ORDER BY evaluation",
+        )
+        .bind(self.calibration)
+        .bind(self.from)
+        .bind(last)
         .fetch_all(&mut *connection)
         .await?;
-        let Some(last) = rows.last() else { return Ok(true) };
-        self.from = last.try_get::<i64>("evaluation")? + 1;
+        self.from = last + 1;
         let mut short = Vec::with_capacity(rows.len());
         let mut numbers: Vec<Value> = vec![self.calibration.into()];
         for row in rows.iter().filter(|row| EVALUATIONS.verify(row).is_ok()) {
@@ -75,7 +121,7 @@ impl ExpiredValues {
                 .execute(&mut *connection)
                 .await?;
         }
-        Ok((rows.len() as i64) < PART)
+        Ok(false)
     }
 }
 

@@ -256,7 +256,7 @@ impl Reader {
     ) -> Result<Option<Vec<f64>>, StoreError> {
         let row = query(
             "SELECT fitted FROM evaluations
-             WHERE calibration = ? AND theta = ? AND fitted IS NOT NULL ORDER BY evaluation LIMIT 1",
+             WHERE calibration = ? AND theta = ? AND length(fitted) > 0 ORDER BY evaluation LIMIT 1",
         )
         .bind(calibration);
         // A file keeps such a vector as text. A server got it from a copy, which converts it to bytes.

@@ -61,6 +61,10 @@ impl Connection {
         query("COMMIT").execute(self).await.map(drop)
     }
 
+    pub(super) async fn rollback(&mut self) -> Result<(), sqlx::Error> {
+        query("ROLLBACK").execute(self).await.map(drop)
+    }
+
     pub(super) async fn close(self) -> Result<(), sqlx::Error> {
         match self {
             Connection::Sqlite(connection) => connection.close().await,

@@ -358,11 +358,18 @@ async fn run(
     let mut closing = false;
     let mut expired = VecDeque::new();
     loop {
-        if expired.is_empty() {
-            if closing || next_writes(&mut connection, &mut receiver, &mut group).await? == 0 {
-                break;
+        match expired.front_mut() {
+            Some(values) => {
+                if values.drop_part(&mut connection).await? {
+                    expired.pop_front();
+                }
             }
-            waiting.linger().await;
+            None => {
+                if closing || next_writes(&mut connection, &mut receiver, &mut group).await? == 0 {
+                    break;
+                }
+                waiting.linger().await;
+            }
         }
         while group.len() < GROUP
             && let Ok(write) = receiver.try_recv()
@@ -370,22 +377,20 @@ async fn run(
             group.push(write);
         }
         closing |= group.iter().any(|w| matches!(w, Write::Close));
+        if group.is_empty() {
+            continue;
+        }
         let began = std::time::Instant::now();
         let mut replies = Replies::default();
         let is_file = matches!(connection, Connection::Sqlite(_));
-        let stored = store_group(
-            &mut connection,
-            group.drain(..),
-            &mut expired,
-            &mut replies,
-            health,
-        );
+        let stored = store_group(&mut connection, group.drain(..), &mut replies, health);
         let facts = if is_file {
             stored.await?
         } else {
             server::in_time(server::GROUP_TIME, stored).await?
         };
         number += facts;
+        expired.extend(replies.expired.drain(..));
         replies.send(listeners);
         health.commits.fetch_add(1, Ordering::Relaxed);
         health.facts.fetch_add(facts, Ordering::Relaxed);
@@ -419,11 +424,10 @@ async fn next_writes(
     }
 }
 
-/// Stores writes in one transaction, and drops a part of the values that expired before. Returns how many of the writes are facts.
+/// Stores writes in one transaction. Returns how many of them are facts.
 async fn store_group(
     connection: &mut Connection,
     group: impl Iterator<Item = Write>,
-    expired: &mut VecDeque<ExpiredValues>,
     replies: &mut Replies,
     health: &StoreHealth,
 ) -> Result<u64, sqlx::Error> {
@@ -437,13 +441,7 @@ async fn store_group(
     }
     health.is_locked.store(false, Ordering::Relaxed);
     let facts = write_group(connection, group, replies, health).await?;
-    if let Some(values) = expired.front_mut()
-        && values.drop_part(connection).await?
-    {
-        expired.pop_front();
-    }
     connection.commit().await?;
-    expired.extend(replies.expired.drain(..));
     Ok(facts)
 }
 

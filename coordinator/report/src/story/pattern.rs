@@ -62,7 +62,7 @@ fn standing_out(residuals: &[(&ComparisonRow, f64)]) -> Option<String> {
         else {
             continue;
         };
-        let scatter = scatter_of_sizes(&groups);
+        let scatter = scatter_of_sizes(&groups, residuals.len());
         if best.as_ref().is_none_or(|(least, _)| scatter < *least) {
             let middle = 0.5 * (level.from + level.to) * factor;
             let mean = of_level.iter().sum::<f64>() / of_level.len() as f64;
@@ -82,19 +82,17 @@ fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|r| r * r).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Returns the variance of the sizes of residuals within groups; infinite where each group has one.
-fn scatter_of_sizes(groups: &[Vec<f64>]) -> f64 {
+/// Returns the variance of the sizes of residuals within groups; infinite where fewer than half of the residuals tell it, so that many levels
+/// with one run each explain nothing.
+fn scatter_of_sizes(groups: &[Vec<f64>], residuals: usize) -> f64 {
     let within = |group: &Vec<f64>| {
         let mean = group.iter().map(|r| r.abs()).sum::<f64>() / group.len() as f64;
         group.iter().map(|r| (r.abs() - mean).powi(2)).sum::<f64>()
     };
-    let degrees_of_freedom = groups
-        .iter()
-        .map(|group| group.len().saturating_sub(1))
-        .sum::<usize>();
-    match degrees_of_freedom {
-        0 => f64::INFINITY,
-        n => groups.iter().map(within).sum::<f64>() / n as f64,
+    let degrees_of_freedom = residuals.saturating_sub(groups.len());
+    match 2 * degrees_of_freedom < residuals {
+        true => f64::INFINITY,
+        false => groups.iter().map(within).sum::<f64>() / degrees_of_freedom as f64,
     }
 }
 
