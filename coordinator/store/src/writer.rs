@@ -356,7 +356,7 @@ async fn run(
     let mut group = Vec::with_capacity(GROUP);
     let mut number = 0;
     let mut closing = false;
-    let mut expired = VecDeque::new();
+    let mut expired: VecDeque<ExpiredValues> = VecDeque::new();
     loop {
         match expired.front_mut() {
             Some(values) => {
