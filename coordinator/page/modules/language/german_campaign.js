@@ -35,7 +35,6 @@ export const CAMPAIGN = {
   "log-evidence": "Log-Evidenz",
   "Look at sensor, preparation, and the wheel on its shaft; where the run is right, the model is wrong there.":
     "Sehen Sie nach Sensor, Vorbereitung und dem Rad auf seiner Welle; wo die Fahrt stimmt, ist das Modell dort falsch.",
-  loss: "Verlust",
   "Make next: {0}.": "Fahren Sie als Nächstes: {0}.",
   "Measurements beside what was expected": "Messungen neben dem, was erwartet war",
   "Models with all runs": "Modelle mit allen Fahrten",

@@ -10,6 +10,7 @@ import { useAnswer } from "../rest/use_answer.js";
 import { address } from "../route.js";
 import { sentence } from "../words/clauses.js";
 import { conditionWords } from "../words/condition.js";
+import { separatedWords } from "../words/few.js";
 import { meanAndSpread, parameterValues, shownParameter } from "../words/parameter.js";
 import { channelOf, quantityName } from "../words/predicted_quantity.js";
 import { capital, digits, probability, size, unitOf } from "../words/quantity.js";
@@ -54,7 +55,7 @@ function News(/** @type {{ followed: Followed }} */ { followed }) {
       ${far.map((expected) => html`<p><b>${t`Run ${expected.run} contradicts the others`}</b>: ${t`${quantityName(expected.channel)} ${valueOf(expected, "measured")}, expected near ${valueOf(expected, "expected")} (P ${probability(expected.probability)})`}</p>`)}
       <p>${wrong >= SEVERAL ? t`So many runs contradict the model: it misses something that they show.` : t`Look at sensor, preparation, and the wheel on its shaft; where the run is right, the model is wrong there.`}</p></div>`}
     <p class="verdict">${sentence(verdict)}</p>
-    ${next && html`<p class="next-run"><b>${t`Make next: ${conditionWords(next)}.`}</b> ${t`It separates ${next.separates.join(", ").replace("none", t`nothing missing`)}`}${next.settles === null || next.settles === undefined ? "." : t`; it settles the matter with P ${probability(next.settles)}.`}</p>`}
+    ${next && html`<p class="next-run"><b>${t`Make next: ${conditionWords(next)}.`}</b> ${t`It separates ${separatedWords(next.separates)}`}${next.settles === null || next.settles === undefined ? "." : t`; it settles the matter with P ${probability(next.settles)}.`}</p>`}
     ${stop && html`<p class="stop"><b>More runs are not worth it:</b> ${sentence(stop)}</p>`}`;
 }
 
