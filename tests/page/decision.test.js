@@ -116,7 +116,7 @@ test("a file that is typed decides at once, in German too", async () => {
     await page.goto(`${service.url}/#/studies/1/decide`);
     await page.getByText("Nach einer Datei entscheiden").click();
     await page.getByLabel("Die Entscheidung, TOML").fill('[decision]\nloss = "energy_j_m"\n[[decision.options]]\nname = "nichts"\nloss = "nosuch"\n');
-    const send = page.getByRole("button", { name: "Entscheidung", exact: true });
+    const send = page.getByRole("button", { name: "Entscheiden", exact: true });
     await send.click();
     await page.getByRole("alert").getByText("1 options must be 2 to 50").waitFor();
     await page.getByLabel("Die Entscheidung, TOML").fill('[decision]\n[[decision.options]]\nname = "fahren"\ncondition = { slope_deg = 8 }\nloss = "energy_j_m"\n[[decision.options]]\nname = "bleiben"\nloss = "9000"\n');

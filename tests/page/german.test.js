@@ -148,7 +148,7 @@ const textsOfPage = () => page.evaluate(() => {
 
 test("no view shows an English text that the catalogue has in German", async () => {
   const study = studyOf(page);
-  const places = ["story", "compare", "failures", "effects", "posterior", "predict", "errors", "trust", "live"].map((view) => `studies/${study}/${view}`);
+  const places = ["story", "compare", "failures", "effects", "posterior", "predict", "decide", "errors", "trust", "live"].map((view) => `studies/${study}/${view}`);
   for (const place of ["", "new", ...places]) {
     await page.goto(`${service.url}/#/${place}`);
     await page.locator("main h1, main h2, section.view").first().waitFor();

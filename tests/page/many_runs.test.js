@@ -11,7 +11,7 @@ const MOST_ELEMENTS = 3000;
 /** Every view, with what it has once it is drawn. */
 const VIEWS = {
   Story: ".plot svg", "Where it fails": ".plot svg", "Missing effect": ".plot svg", Posterior: ".plot svg", Predict: ".plot svg",
-  "Error falls": ".plot svg", "How far to trust it": "table", Live: "table", Compare: ".plot svg",
+  "Error falls": ".plot svg", "How far to trust it": "table", Decide: ".empty", Live: "table", Compare: ".plot svg",
 };
 let service, tab, page, study;
 

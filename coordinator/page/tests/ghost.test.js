@@ -23,6 +23,7 @@ test("an explanation that changes no prediction by a tenth of its error sd is ab
   assert.deepEqual([...withoutChange(ROWS, { ...CURVES, effects })], ["edge_loss", "fine"]);
   assert.deepEqual([...withoutChange([], { ...CURVES, effects })], []);
   assert.equal(withoutChange(ROWS, undefined).size, 0);
+  assert.equal(withoutChange(ROWS, { data: [], base: [], effects: { tare: [] } }).size, 0);
 });
 
 test("the data cannot tell apart what is of one class and alike in evidence", () => {

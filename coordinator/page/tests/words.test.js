@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { table } from "../modules/chart/download.js";
-import { separatedWords } from "../modules/chart/information_map.js";
+import { separatedWords } from "../modules/words/few.js";
 import { groups } from "../modules/words/group.js";
 import { byWeight, flagWords } from "../modules/part/flags.js";
 import { benchTest } from "../modules/words/bench_test.js";

@@ -9,6 +9,7 @@ import { rimSpeed } from "../words/group.js";
 import { levelOf, levels, levelWords } from "../words/level.js";
 import { Figure, fileName } from "./figure.js";
 import { Plot, STYLE } from "./library.js";
+import { separatedWords } from "../words/few.js";
 
 /** What is drawn: an estimate below 0 is 0 within its error. */
 export const shownNats = (/** @type {number} */ nats) => Math.max(0, nats);
@@ -60,15 +61,6 @@ export function InformationMap({ record, name }) {
 const isSame = (/** @type {any} */ a, /** @type {any} */ b) =>
   a.slip === b.slip && a.wheel_load_n === b.wheel_load_n && a.sled_speed_m_s === b.sled_speed_m_s;
 
-/** Number of explanations that a run names. */
-const NAMED = 3;
-
-/** The explanations that a run tells apart: a few by name, the others counted. */
-export function separatedWords(/** @type {string[]} */ separates) {
-  const names = separates.map((name) => (name === "none" ? t`nothing missing` : name));
-  const few = names.slice(0, NAMED).join(", ");
-  return names.length > NAMED ? t`${few} and ${names.length - NAMED} more` : few;
-}
 
 function ProposedRuns(/** @type {{ record: any }} */ { record }) {
   if (record.next_runs.length === 0) return null;

@@ -10,6 +10,7 @@ import { useAnswer } from "../rest/use_answer.js";
 import { address } from "../route.js";
 import { sentence } from "../words/clauses.js";
 import { conditionWords } from "../words/condition.js";
+import { separatedWords } from "../words/few.js";
 import { meanAndSpread, parameterValues, shownParameter } from "../words/parameter.js";
 import { channelOf, quantityName } from "../words/predicted_quantity.js";
 import { capital, digits, probability, size, unitOf } from "../words/quantity.js";
@@ -51,10 +52,10 @@ function News(/** @type {{ followed: Followed }} */ { followed }) {
   return html`
     <p>${runs.length === 1 ? t`1 further run: ${runs[0]}` : t`${runs.length} further runs, the last ${runs[runs.length - 1]}`}</p>
     ${far.length > 0 && html`<div class="error" role="alert">
-      ${far.map((expected) => html`<p><b>${t`Run ${expected.run} contradicts the others`}</b>: ${t`${quantityName(expected.channel)} ${valueOf(expected, "measured")}, expected near ${valueOf(expected, "expected")} (P ${digits(expected.probability, 1)})`}</p>`)}
+      ${far.map((expected) => html`<p><b>${t`Run ${expected.run} contradicts the others`}</b>: ${t`${quantityName(expected.channel)} ${valueOf(expected, "measured")}, expected near ${valueOf(expected, "expected")} (P ${probability(expected.probability)})`}</p>`)}
       <p>${wrong >= SEVERAL ? t`So many runs contradict the model: it misses something that they show.` : t`Look at sensor, preparation, and the wheel on its shaft; where the run is right, the model is wrong there.`}</p></div>`}
     <p class="verdict">${sentence(verdict)}</p>
-    ${next && html`<p class="next-run"><b>${t`Make next: ${conditionWords(next)}.`}</b> ${t`It separates ${next.separates.join(", ").replace("none", t`nothing missing`)}`}${next.settles === null || next.settles === undefined ? "." : t`; it settles the matter with P ${probability(next.settles)}.`}</p>`}
+    ${next && html`<p class="next-run"><b>${t`Make next: ${conditionWords(next)}.`}</b> ${t`It separates ${separatedWords(next.separates)}`}${next.settles === null || next.settles === undefined ? "." : t`; it settles the matter with P ${probability(next.settles)}.`}</p>`}
     ${stop && html`<p class="stop"><b>More runs are not worth it:</b> ${sentence(stop)}</p>`}`;
 }
 
@@ -70,7 +71,9 @@ function Details(/** @type {{ followed: Followed }} */ { followed }) {
     const [low, high] = parameterValues(called, parameter.interval, parameter.mean, parameter.sd);
     return [called.name, called.unit, meanAndSpread(called, parameter.mean, parameter.sd), t`${low} to ${high}`];
   });
-  const expected = followed.expectations.map((one) => [one.run, capital(quantityName(one.channel)), valueOf(one, "measured"), valueOf(one, "expected"), probability(one.probability)]);
+  const expected = followed.expectations.map((measurement) => [
+    measurement.run, capital(quantityName(measurement.channel)), valueOf(measurement, "measured"), valueOf(measurement, "expected"),
+    probability(measurement.probability)]);
   return html`
     <h3>Models with all runs</h3>
     <${Table} label="Models with all runs" head=${[t`model`, t`weight before`, t`weight`, t`log-evidence`, t`by`, t`effective draws`]} rows=${models} numbers=${[1, 2, 3, 5]} />
@@ -104,6 +107,6 @@ export function joined(/** @type {string} */ before, /** @type {string} */ after
   const tables = [before, after].filter((text) => text.trim() !== "").map((text) =>
     d3.csvParseRows(text).map((row) => row.map((cell) => cell.trim())).filter((row) => !row[0].startsWith("#") && row.some((cell) => cell !== "")));
   const columns = [...new Set(tables.flatMap(([header]) => header))];
-  const rows = tables.flatMap(([header, ...own]) => own.map((row) => columns.map((column) => row[header.indexOf(column)] ?? "")));
+  const rows = tables.flatMap(([header, ...body]) => body.map((row) => columns.map((column) => row[header.indexOf(column)] ?? "")));
   return `${d3.csvFormatRows([columns, ...rows])}\n`;
 }

@@ -43,7 +43,7 @@ export function DecisionForm({ id, onDecided }) {
       <form onSubmit=${send}>
         <p><label>A file with a table [decision] <input type="file" accept=".toml" onChange=${chosen} /></label></p>
         <textarea aria-label="The decision, TOML" spellcheck="false" value=${text} onInput=${(/** @type {any} */ e) => setText(e.target.value)}></textarea>
-        <p class="actions"><button class="main" type="submit" disabled=${isBusy}>${isBusy ? t`is being computed …` : t`Decide`}</button></p>
+        <p class="actions"><button class="main" type="submit" disabled=${isBusy}>${isBusy ? t`is being computed …` : t`Decide now`}</button></p>
       </form>
       <${Failure} error=${failure} />
     </details>`;

@@ -7,6 +7,7 @@ import { useAnswer } from "../rest/use_answer.js";
 import { parameterValue, shownParameter } from "../words/parameter.js";
 import { capital, digits, minus, parameterName, probability, raised, words } from "../words/quantity.js";
 import { additionOf, TakeBack } from "./take_back.js";
+import { few } from "../words/few.js";
 
 /** A fitted parameter below this is 0. */
 const ZERO = 1e-12;
@@ -91,11 +92,6 @@ export function likeOf(/** @type {any[]} */ effects, /** @type {any} */ effect) 
   const isLike = (/** @type {any} */ other) => other.class === effect.class && other.name !== effect.name
     && Math.abs(other.log_bayes_factor - effect.log_bayes_factor) <= ALIKE;
   return effects.filter(isLike).map((other) => other.name);
-}
-
-/** Names, of which a few are said and the others counted. */
-function few(/** @type {string[]} */ names) {
-  return names.length > 3 ? t`${names.slice(0, 3).join(", ")} and ${names.length - 3} more` : names.join(", ");
 }
 
 /** What is sent to add an effect; `EFFECT.WHEEL` acts on one wheel. */

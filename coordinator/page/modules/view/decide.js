@@ -10,7 +10,7 @@ import { Table } from "../part/table.js";
 import { isReport } from "../rest/answers.js";
 import { get, path } from "../rest/routes.js";
 import { loadWords, speedWords } from "../words/condition.js";
-import { loss, lossWithError, percent, slipDigits } from "../words/decision.js";
+import { loss, lossWithError, percent, significant, slipDigits } from "../words/decision.js";
 import { capital, digits } from "../words/quantity.js";
 
 /** @typedef {import("../../types/api").components["schemas"]["DecisionAnswer"]} Decision */
@@ -51,7 +51,7 @@ function Answer(/** @type {{ decision: Decision, name: string }} */ { decision, 
 /** The best option, and by how much. */
 function bestWords(/** @type {Decision} */ { best, second, margin, margin_se: se, probability_best: probability }) {
   if (!best) return t`No option keeps all constraints.`;
-  const lead = second && margin !== null && margin !== undefined ? t`${best} is the best, by ${digits(margin, 3)} ± ${digits(se ?? 0, 2)} before ${second}.` : t`${best} is the best.`;
+  const lead = second && margin !== null && margin !== undefined ? t`${best} is the best, by ${significant(margin, 3)} ± ${significant(se ?? 0, 2)} before ${second}.` : t`${best} is the best.`;
   return `${lead}${probability === null || probability === undefined ? "" : ` ${t`Over parameters and models it is the best with P ${probability.toFixed(2)}.`}`}`;
 }
 
@@ -92,10 +92,10 @@ function Worth(/** @type {{ decision: Decision }} */ { decision: { perfect_infor
   const worth = (/** @type {boolean | null | undefined} */ is) => (is === true ? t`more than it costs` : is === false ? t`less than it costs` : "–");
   const [first] = runs;
   const rows = runs.map((run) => [
-    run.run, run.wheel, digits(run.slip, 2), loadWords(run.wheel_load_n), speedWords(run.sled_speed_m_s), `${digits(run.value, 3)} ± ${digits(run.value_se, 2)}`, worth(run.is_worth_its_cost)]);
+    run.run, run.wheel, digits(run.slip, 2), loadWords(run.wheel_load_n), speedWords(run.sled_speed_m_s), `${significant(run.value, 3)} ± ${significant(run.value_se, 2)}`, worth(run.is_worth_its_cost)]);
   return html`
     <h2>What one more run is worth</h2>
     <p>${first?.is_worth_its_cost === true ? html`<b>One more run is worth its cost before the decision: ${first.run}.</b> ` : first?.is_worth_its_cost === false ? html`<b>No further run is worth its cost.</b> ` : ""}
-      ${t`Knowing parameters and model would lower the expected loss by ${digits(perfect, 3)}.`} ${cost === null || cost === undefined ? "" : t`A run costs ${loss(cost)}.`}</p>
+      ${t`Knowing parameters and model would lower the expected loss by ${significant(perfect, 3)}.`} ${cost === null || cost === undefined ? "" : t`A run costs ${loss(cost)}.`}</p>
     ${runs.length > 0 && html`<${Table} label="Further runs" head=${[t`run`, t`wheel`, t`slip`, t`load`, t`speed`, t`worth`, t`beside its cost`]} rows=${rows} numbers=${[2, 3, 4, 5]} />`}`;
 }

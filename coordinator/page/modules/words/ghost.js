@@ -40,7 +40,10 @@ export function byChange(rows, curves, ghost) {
  */
 export function withoutChange(rows, curves) {
   const errors = errorsOf(rows);
-  const isUnchanged = (/** @type {string} */ name) => [...changesOf(errors, curves, name).values()].every((change) => change < LEAST_CHANGE);
+  const isUnchanged = (/** @type {string} */ name) => {
+    const changes = changesOf(errors, curves, name);
+    return changes.size > 0 && [...changes.values()].every((change) => change < LEAST_CHANGE);
+  };
   return new Set(Object.keys(curves?.effects ?? {}).filter((name) => name !== "none" && isUnchanged(name)));
 }
 
