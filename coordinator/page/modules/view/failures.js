@@ -50,7 +50,7 @@ export function Failures({ study, model }) {
     ${hasErrorsBesideNoise(rows) && html`
       <div class="actions" role="group" aria-label=${t`Errors that residuals count in`}>
         <span class="note">${t`Errors that residuals count in`}</span>
-        ${Object.entries(ERRORS).map(([key, words]) => html`
+        ${ERRORS.map(({ key, words }) => html`
           <button type="button" aria-pressed=${key === errors} onClick=${() => setErrors(key)}>${words}</button>`)}
       </div>`}
     <${HeatMap} rows=${rows} order=${order} errors=${errors} name=${study.name} />
@@ -66,8 +66,8 @@ export function Failures({ study, model }) {
     ${findings.length > 0 && html`<h2>What the diagnosis says</h2><ul>${findings.map((/** @type {string} */ text) => html`<li>${capital(raised(text))}</li>`)}</ul>`}`;
 }
 
-/** The errors that residuals may count in. */
-const ERRORS = { all: t`all errors`, noise: t`the noise alone` };
+/** @type {{ key: "all" | "noise", words: string }[]} the errors that residuals may count in */
+const ERRORS = [{ key: "all", words: t`all errors` }, { key: "noise", words: t`the noise alone` }];
 
 /** The order in which the runs stand in the file. */
 const MADE = { key: "place", title: t`order of the runs`, short: t`runs`, unit: "1", scale: 1 };
