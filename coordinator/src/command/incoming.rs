@@ -11,7 +11,7 @@ use shared::experiment::Experiment;
 use shared::file::FileSet;
 
 use super::output::remark;
-use super::watch::run_names;
+use super::run_table::run_names;
 
 /// So long a file must stay as it is before it is read, because whoever writes it may not have ended.
 const STILL: Duration = Duration::from_secs(5);

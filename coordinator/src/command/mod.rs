@@ -17,6 +17,7 @@ mod place;
 mod predict;
 mod progress;
 mod run;
+mod run_table;
 mod scale;
 mod schema;
 mod serve;
