@@ -44,6 +44,8 @@ pub(super) struct Incoming {
 }
 
 impl Incoming {
+    /// Makes a reader of a folder that has taken no file yet.
+    ///
     /// # Errors
     /// The experiment is not valid.
     pub(super) fn new(

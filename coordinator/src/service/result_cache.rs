@@ -86,7 +86,7 @@ impl ResultCache {
             let mut in_memory = self.in_memory();
             let kept = in_memory.remove(&results.study);
             let kept = kept.filter(|kept| kept.stamp == results.stamp);
-            // What is new stands in the place of what was kept.
+            // The new texts replace those that were kept under the same names.
             let mut files = kept.map_or_else(BTreeMap::new, |kept| kept.files);
             files.extend(results.files);
             in_memory.insert(results.study, StudyResults { files, ..results });

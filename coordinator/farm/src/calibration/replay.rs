@@ -334,7 +334,7 @@ mod tests {
         let first = work(&mut finished, usize::MAX, false);
         let whole = sorted(&first);
         assert_eq!(results(&first).len(), 1);
-        // What was told to the emulator is needed no more, but for the draws from the prior, which diagnostics read.
+        // Diagnostics read the draws from the prior. Nothing reads the later values that the emulator was told.
         let width = finished.spec.algorithm.width() as u64;
         assert!(matches!(first.last(), Some(Fact::ValuesExpired { from, .. }) if *from == width));
         // The fitted runs of the final draws were simulated while sampling, and are no further simulations.
