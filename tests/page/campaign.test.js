@@ -19,7 +19,10 @@ before(async () => {
   const isFirst = (line) => FIRST.includes(line.split(",")[slip]);
   further = fitted.filter((line) => !isFirst(line));
   const runs = [header, ...fitted.filter(isFirst)].join("\n");
-  const { id } = await service.post("/v1/experiments", { toml: files["experiment.toml"], files: { "runs.csv": `${runs}\n` } });
+  const { id } = await service.post("/v1/experiments", {
+    toml: files["experiment.toml"],
+    files: { "runs.csv": `${runs}\n` },
+  });
   const toml = files["job.toml"].replace('apply = "auto"', 'apply = "ask"');
   const { study } = await service.post("/v1/calibrations", { experiment: id, toml, files: {}, name: "campaign" });
   await service.finished(study);
@@ -37,7 +40,9 @@ const parameters = () => page.getByRole("region", { name: "Parameters with all r
 test("runs that are posted one by one change posterior, models and verdict, and the next run is proposed", async () => {
   await page.goto(`${service.url}/#/studies/1/live?member=1`);
   await page.getByRole("heading", { name: "Follow a campaign" }).waitFor();
-  await page.evaluate(() => { globalThis.isSamePage = true; });
+  await page.evaluate(() => {
+    globalThis.isSamePage = true;
+  });
   let before = "";
   for (let count = 1; count <= 3; count += 1) {
     const answer = await post(further.slice(0, count));
@@ -49,7 +54,11 @@ test("runs that are posted one by one change posterior, models and verdict, and 
     const models = await page.getByRole("region", { name: "Models with all runs" }).locator("tbody").textContent();
     assert.ok(models.includes(answer.models[0].weight.toFixed(3)), models);
     assert.equal((await page.locator(".next-run").count()) > 0, answer.next_runs.length > 0);
-    if (answer.next_runs.length > 0) assert.match(await page.locator(".next-run").textContent(), /Make next: slip .*It separates .*; it settles the matter with P (<|>)? ?[01]\.\d+/);
+    if (answer.next_runs.length > 0)
+      assert.match(
+        await page.locator(".next-run").textContent(),
+        /Make next: slip .*It separates .*; it settles the matter with P (<|>)? ?[01]\.\d+/,
+      );
     assert.equal(await page.locator(".stop").count(), answer.stop ? 1 : 0);
   }
   // Nothing was loaded anew, and nothing is asked again and again.
@@ -67,7 +76,13 @@ test("a run that contradicts all others is said at once", async () => {
   await post([near[0], cells.join(",")]);
   const alert = page.getByRole("alert").filter({ hasText: "contradicts the others" });
   await alert.waitFor();
-  assert.match(await alert.textContent(), new RegExp(`Run ${cells[0]} contradicts the others: drawbar pull .* N, expected near .* N.*Look at sensor, preparation`, "i"));
+  assert.match(
+    await alert.textContent(),
+    new RegExp(
+      `Run ${cells[0]} contradicts the others: drawbar pull .* N, expected near .* N.*Look at sensor, preparation`,
+      "i",
+    ),
+  );
   await shot(page, "campaign-contradiction");
 });
 

@@ -26,7 +26,10 @@ test("an example is edited in the form and calibrated", async () => {
   await card.locator("summary").click();
   const text = page.getByLabel("text of discover.toml");
   // Fewer particles keep the test short; the search waits for a click.
-  const job = (await text.inputValue()).replace(/particles = \d+/, "particles = 200").replace(/moves = .*/, "").replace('apply = "auto"', 'apply = "ask"');
+  const job = (await text.inputValue())
+    .replace(/particles = \d+/, "particles = 200")
+    .replace(/moves = .*/, "")
+    .replace('apply = "auto"', 'apply = "ask"');
   await text.fill(job);
   await page.getByRole("button", { name: "Start the calibration" }).click();
   await page.waitForURL(/live/);
@@ -42,7 +45,10 @@ test("regions of the corner plot end at their cells", async () => {
   await view(page, "Posterior");
   const inside = page.locator('[data-figure^="pairs"] .plot > svg svg');
   await inside.first().waitFor();
-  assert.deepEqual([...new Set(await inside.evaluateAll((all) => all.map((svg) => getComputedStyle(svg).overflow)))], ["hidden"]);
+  assert.deepEqual(
+    [...new Set(await inside.evaluateAll((all) => all.map((svg) => getComputedStyle(svg).overflow)))],
+    ["hidden"],
+  );
 });
 
 test("the explanations come with a map of the runs that would tell", async () => {
@@ -50,9 +56,14 @@ test("the explanations come with a map of the runs that would tell", async () =>
   await page.locator("table.explanations tbody tr").first().waitFor();
   await page.locator('section[aria-label="Missing effect"] figure .plot > svg').last().waitFor();
   const cells = page.locator('[data-figure*="next-runs"] g[fill] rect, [data-figure*="next-runs"] rect[fill]');
-  const fills = await cells.evaluateAll((all) => all.map((cell) => cell.getAttribute("fill")).filter((fill) => fill?.startsWith("color-mix")));
+  const fills = await cells.evaluateAll((all) =>
+    all.map((cell) => cell.getAttribute("fill")).filter((fill) => fill?.startsWith("color-mix")),
+  );
   assert.ok(fills.length > 20, `${fills.length} cells`);
-  assert.deepEqual(fills.filter((fill) => fill.includes(" -")), []);
+  assert.deepEqual(
+    fills.filter((fill) => fill.includes(" -")),
+    [],
+  );
   assert.deepEqual(await page.evaluate((all) => all.filter((fill) => !CSS.supports("fill", fill)), fills), []);
   await page.locator(".ramp").waitFor();
   await page.locator("table.explanations button.plain").first().focus();
@@ -75,24 +86,39 @@ test("measured values of the proposed runs start a calibration of all", async ()
   assert.ok(added !== id || study.members.length > before.members.length, "there is no calibration with the new run");
   const { rows } = await service.get(`/v1/calibrations/${study.current}/comparison`);
   const own = rows.filter((row) => row.run.startsWith("next-"));
-  assert.deepEqual(own.map((row) => [row.wheel, row.channel, row.measured]).sort(), [["grousered", "drawbar_pull", 3.5], ["grousered", "sinkage", 0.0145]]);
+  assert.deepEqual(own.map((row) => [row.wheel, row.channel, row.measured]).sort(), [
+    ["grousered", "drawbar_pull", 3.5],
+    ["grousered", "sinkage", 0.0145],
+  ]);
   await page.goto(`${service.url}/#/studies/${study.id}/errors`);
   const names = await page.getByRole("group", { name: "Models that are shown" }).getByRole("button").allTextContents();
   assert.equal(new Set(names).size, names.length, `models share a name: ${names}`);
   await page.locator('[data-figure*="layers"] [data-run^="next-"]').first().waitFor({ state: "attached" });
   // Errors and evidence over different runs stand apart.
   const picture = page.locator('[data-figure*="error-drawbar"] .plot > svg');
-  assert.match(await picture.locator("text").allTextContents().then((all) => all.join(" ")), /\+ 1 run/);
+  assert.match(
+    await picture
+      .locator("text")
+      .allTextContents()
+      .then((all) => all.join(" ")),
+    /\+ 1 run/,
+  );
   const ends = study.ledger.map((line) => line.data_set).filter((set, k, all) => k === 0 || set !== all[k - 1]).length;
   assert.ok(ends > 1);
   assert.equal(await picture.locator(".errors path").count(), 2 * ends);
-  const outside = await page.evaluate(() => [...document.querySelectorAll('[data-figure*="error-"] .plot > svg')].flatMap((svg) => {
-    const frame = svg.getBoundingClientRect();
-    const boxes = [...svg.querySelectorAll("line, path")].map((line) => line.getBoundingClientRect());
-    return boxes.filter((box) => box.left < frame.left - 1 || box.right > frame.right + 1);
-  }).length);
+  const outside = await page.evaluate(
+    () =>
+      [...document.querySelectorAll('[data-figure*="error-"] .plot > svg')].flatMap((svg) => {
+        const frame = svg.getBoundingClientRect();
+        const boxes = [...svg.querySelectorAll("line, path")].map((line) => line.getBoundingClientRect());
+        return boxes.filter((box) => box.left < frame.left - 1 || box.right > frame.right + 1);
+      }).length,
+  );
   assert.equal(outside, 0, "lines leave their picture");
-  assert.equal(await page.getByRole("region", { name: /^Error ledger, / }).count(), new Set(study.ledger.map((line) => line.data_set)).size);
+  assert.equal(
+    await page.getByRole("region", { name: /^Error ledger, / }).count(),
+    new Set(study.ledger.map((line) => line.data_set)).size,
+  );
   await shot(page, "cmu-errors-more-runs");
 });
 

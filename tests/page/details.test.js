@@ -12,9 +12,15 @@ let service, tab, page, study;
 before(async () => {
   service = await Service.start();
   const ask = (job) => job.replace('apply = "auto"', 'apply = "ask"');
-  const texts = Object.fromEntries((await filesOf("examples/hidden-effect", ask)).map(({ name, text }) => [name, text]));
-  const { id } = await service.post("/v1/experiments", { toml: texts["experiment.toml"], files: { "runs.csv": texts["runs.csv"] } });
-  study = (await service.post("/v1/calibrations", { experiment: id, toml: texts["job.toml"], files: {}, name: "sand" })).study;
+  const texts = Object.fromEntries(
+    (await filesOf("examples/hidden-effect", ask)).map(({ name, text }) => [name, text]),
+  );
+  const { id } = await service.post("/v1/experiments", {
+    toml: texts["experiment.toml"],
+    files: { "runs.csv": texts["runs.csv"] },
+  });
+  study = (await service.post("/v1/calibrations", { experiment: id, toml: texts["job.toml"], files: {}, name: "sand" }))
+    .study;
   tab = await open({ url: service.url });
   page = tab.page;
 });
@@ -25,15 +31,29 @@ after(async () => {
 
 test("a search shows what it is doing, who leads, and who computes", async () => {
   // Its search takes several seconds, so that it is not over before the page shows it.
-  const files = await filesOf("examples/cmu-sand", undefined, ["discover.toml", "discover-experiment.toml", "runs.csv"]);
+  const files = await filesOf("examples/cmu-sand", undefined, [
+    "discover.toml",
+    "discover-experiment.toml",
+    "runs.csv",
+  ]);
   const texts = Object.fromEntries(files.map(({ name, text }) => [name, text]));
-  const { id } = await service.post("/v1/experiments", { toml: texts["discover-experiment.toml"], files: { "runs.csv": texts["runs.csv"] } });
+  const { id } = await service.post("/v1/experiments", {
+    toml: texts["discover-experiment.toml"],
+    files: { "runs.csv": texts["runs.csv"] },
+  });
   let watched;
   // On a busy machine the search may be over before the page is there; it is then searched again.
   for (let attempt = 0, over = true; over; attempt += 1) {
     assert.ok(attempt < 3, "a search was over before the page showed it, three times");
     if (watched) await fetch(`${service.url}/v1/studies/${watched}`, { method: "DELETE" });
-    watched = (await service.post("/v1/calibrations", { experiment: id, toml: texts["discover.toml"], files: {}, name: "watched" })).study;
+    watched = (
+      await service.post("/v1/calibrations", {
+        experiment: id,
+        toml: texts["discover.toml"],
+        files: {},
+        name: "watched",
+      })
+    ).study;
     await page.goto(`${service.url}/#/studies/${watched}/live`);
     const leader = page.getByRole("list", { name: "Leaders so far" }).locator("li").first();
     const end = page.getByRole("link", { name: "Read the story" });
@@ -84,7 +104,10 @@ test("an effect that was added is taken back, and added again without being comp
   const before = await service.get(`/v1/studies/${study}`);
   assert.equal(before.ledger.length, 1);
   assert.notEqual(before.current, added);
-  const weighed = async (id) => (await service.post(`/v1/calibrations/${id}/predict`, { sweep: "slip=0.1:0.3:2", draws: 20 })).models.map((model) => model.calibration);
+  const weighed = async (id) =>
+    (await service.post(`/v1/calibrations/${id}/predict`, { sweep: "slip=0.1:0.3:2", draws: 20 })).models.map(
+      (model) => model.calibration,
+    );
   assert.deepEqual(await weighed(before.current), [before.current]);
   assert.deepEqual(await weighed(added), [added]);
   // The rows of the list follow, and the results of what was taken back stay readable.
@@ -94,7 +117,11 @@ test("an effect that was added is taken back, and added again without being comp
   const again = await service.post(`/v1/calibrations/${before.current}/extend`, { effect: "janosi_hanamoto" });
   assert.equal(again.id, added);
   assert.equal((await service.get(`/v1/studies/${study}`)).current, added);
-  const refused = await fetch(`${service.url}/v1/calibrations/${before.current}/withdraw`, { method: "POST", headers: { "content-type": "application/json" }, body: "{}" });
+  const refused = await fetch(`${service.url}/v1/calibrations/${before.current}/withdraw`, {
+    method: "POST",
+    headers: { "content-type": "application/json" },
+    body: "{}",
+  });
   assert.equal(refused.status, 409);
 });
 

@@ -13,7 +13,12 @@ before(async () => {
 });
 after(() => service?.stop());
 
-for (const [theme, width] of [["light", 1280], ["dark", 1280], ["light", 400], ["dark", 400]]) {
+for (const [theme, width] of [
+  ["light", 1280],
+  ["dark", 1280],
+  ["light", 400],
+  ["dark", 400],
+]) {
   test(`the interface is described, accessible and fits, ${theme}, ${width} px`, async () => {
     const tab = await open({ url: service.url, theme, width });
     try {
@@ -21,9 +26,14 @@ for (const [theme, width] of [["light", 1280], ["dark", 1280], ["light", 400], [
       await page.goto(`${service.url}/docs`);
       await page.getByRole("heading", { name: "The interface" }).waitFor();
       const { paths, components } = await service.get("/openapi.json");
-      const ids = Object.values(paths).flatMap((methods) => Object.values(methods).map(({ operationId }) => operationId));
+      const ids = Object.values(paths).flatMap((methods) =>
+        Object.values(methods).map(({ operationId }) => operationId),
+      );
       await page.locator(".operation").first().waitFor();
-      assert.deepEqual((await page.locator(".operation").evaluateAll((all) => all.map(({ id }) => id))).sort(), ids.sort());
+      assert.deepEqual(
+        (await page.locator(".operation").evaluateAll((all) => all.map(({ id }) => id))).sort(),
+        ids.sort(),
+      );
       assert.equal(await page.locator(".schema").count(), Object.keys(components.schemas).length);
       await shot(page, `docs-${theme}-${width}`);
 
@@ -37,7 +47,10 @@ for (const [theme, width] of [["light", 1280], ["dark", 1280], ["light", 400], [
       await operation.getByRole("button", { name: "GET" }).click();
       await operation.getByRole("status").getByText("200 after").waitFor();
       assert.match(await operation.locator(".answer").textContent(), /"experiment.toml"/);
-      assert.match(await operation.getByLabel("the same on a terminal").textContent(), /^curl -s 'http:.*\/v1\/examples\/hidden-effect'$/);
+      assert.match(
+        await operation.getByLabel("the same on a terminal").textContent(),
+        /^curl -s 'http:.*\/v1\/examples\/hidden-effect'$/,
+      );
       assert.deepEqual(await findings(page), []);
       assert.equal(await sideways(page), 0, "it scrolls sideways [px]");
       await shot(page, `docs-trial-${theme}-${width}`);

@@ -36,18 +36,25 @@ test("the page speaks the language of the browser", async () => {
 
 test("a spreadsheet becomes runs, of which some are held out and one is excluded with its reason", async () => {
   await page.getByRole("link", { name: "Neue Kalibrierung" }).first().click();
-  await page.locator('input[type="file"]').setInputFiles({ name: "Messung_Sand.xlsx", mimeType: "application/octet-stream", buffer: await readFile(FILE) });
+  await page
+    .locator('input[type="file"]')
+    .setInputFiles({ name: "Messung_Sand.xlsx", mimeType: "application/octet-stream", buffer: await readFile(FILE) });
   await page.getByText("Die Spalten von Messung_Sand.xlsx").waitFor();
   await fill("wheel aller Zeilen", "w");
   await fill("soil aller Zeilen", "s");
   await fill("radius with which the rig converts slip to rim speed aller Zeilen", "125");
-  await page.getByLabel("Einheit von radius with which the rig converts slip to rim speed", { exact: true }).selectOption("mm");
+  await page
+    .getByLabel("Einheit von radius with which the rig converts slip to rim speed", { exact: true })
+    .selectOption("mm");
   await shot(page, "german-import");
   await page.getByRole("button", { name: "Diese 40 Fahrten verwenden" }).click();
   await page.getByText("Fahrten: 24 angepasst, 16 zurückgehalten, 0 ausgeschlossen").click();
   await page.getByRole("button", { name: "Jede vierte Fahrt zurückhalten" }).click();
   await page.getByText("Fahrten: 30 angepasst, 10 zurückgehalten, 0 ausgeschlossen").waitFor();
-  const [, first] = await page.getByRole("region", { name: "Fahrten des Entwurfs" }).locator("tbody th").allTextContents();
+  const [, first] = await page
+    .getByRole("region", { name: "Fahrten des Entwurfs" })
+    .locator("tbody th")
+    .allTextContents();
   await page.getByLabel(`Verwendung der Fahrt ${first}`, { exact: true }).selectOption("excluded");
   const reason = page.getByLabel(`Grund bei Fahrt ${first}`, { exact: true });
   await reason.pressSequentially("Kraftmessdose verrutscht");
@@ -92,7 +99,9 @@ test("wheel, noise and limits are typed with decimal commas", async () => {
   assert.deepEqual(study.details, { name: null, author: "Zoë Meyer", tags: ["Sand", "Rinne 2"], note: null });
   const files = await service.get(`/v1/experiments/${study.experiment}`);
   assert.match(files.files["runs.csv"], /^# excluded: Kraftmessdose verrutscht; run: /m);
-  const loads = (await service.get(`/v1/calibrations/${study.members.find((m) => m.kind === "search").id}/discovery`)).information.map((run) => run.wheel_load_n);
+  const loads = (
+    await service.get(`/v1/calibrations/${study.members.find((m) => m.kind === "search").id}/discovery`)
+  ).information.map((run) => run.wheel_load_n);
   assert.ok(loads.length > 0 && loads.every((load) => load >= 40 && load <= 150), `${loads}`);
 });
 
@@ -129,26 +138,51 @@ test("the result is read in German, and printed on two pages", async () => {
 });
 
 /** English texts of the page with a German form of their own; a part that varies stands for any words. */
-const ENGLISH = Object.entries(GERMAN).filter(([english, german]) => english !== german && /\p{L}{4}/u.test(english.replace(/\{\d\}/g, "")))
-  .map(([english]) => new RegExp(`^${english.replace(/[.*+?^$()|[\]\\]/g, "\\$&").replace(/\{\d\}/g, ".+?").replace(/[{}]/g, "\\$&")}$`, "u"));
+const ENGLISH = Object.entries(GERMAN)
+  .filter(([english, german]) => english !== german && /\p{L}{4}/u.test(english.replace(/\{\d\}/g, "")))
+  .map(
+    ([english]) =>
+      new RegExp(
+        `^${english
+          .replace(/[.*+?^$()|[\]\\]/g, "\\$&")
+          .replace(/\{\d\}/g, ".+?")
+          .replace(/[{}]/g, "\\$&")}$`,
+        "u",
+      ),
+  );
 /** Sentences of the service, which stay English, and names as they are written in files. */
-const OF_SERVICE = /^\w+_\w+|^synthetic tests of|\.$|^it changes nothing at|(is|are) not stated; |^\d+ fitted runs with/;
+const OF_SERVICE =
+  /^\w+_\w+|^synthetic tests of|\.$|^it changes nothing at|(is|are) not stated; |^\d+ fitted runs with/;
 
 /** Texts and labels that a person sees or hears, with everything unfolded. */
-const textsOfPage = () => page.evaluate(() => {
-  for (const details of document.querySelectorAll("details")) details.open = true;
-  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
-  const texts = [];
-  while (walker.nextNode()) if (!walker.currentNode.parentElement.closest("pre, code, script, style, [lang]:not(html)")) texts.push(walker.currentNode.data);
-  for (const element of document.querySelectorAll("[aria-label], [title], [placeholder]")) {
-    for (const name of ["aria-label", "title", "placeholder"]) texts.push(element.getAttribute(name) ?? "");
-  }
-  return [...new Set(texts.map((text) => text.trim().replace(/\s+/g, " ")).filter((text) => /\p{L}{4}/u.test(text)))];
-});
+const textsOfPage = () =>
+  page.evaluate(() => {
+    for (const details of document.querySelectorAll("details")) details.open = true;
+    const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+    const texts = [];
+    while (walker.nextNode())
+      if (!walker.currentNode.parentElement.closest("pre, code, script, style, [lang]:not(html)"))
+        texts.push(walker.currentNode.data);
+    for (const element of document.querySelectorAll("[aria-label], [title], [placeholder]")) {
+      for (const name of ["aria-label", "title", "placeholder"]) texts.push(element.getAttribute(name) ?? "");
+    }
+    return [...new Set(texts.map((text) => text.trim().replace(/\s+/g, " ")).filter((text) => /\p{L}{4}/u.test(text)))];
+  });
 
 test("no view shows an English text that the catalogue has in German", async () => {
   const study = studyOf(page);
-  const places = ["story", "compare", "failures", "effects", "posterior", "predict", "decide", "errors", "trust", "live"].map((view) => `studies/${study}/${view}`);
+  const places = [
+    "story",
+    "compare",
+    "failures",
+    "effects",
+    "posterior",
+    "predict",
+    "decide",
+    "errors",
+    "trust",
+    "live",
+  ].map((view) => `studies/${study}/${view}`);
   for (const place of ["", "new", ...places]) {
     await page.goto(`${service.url}/#/${place}`);
     await page.locator("main h1, main h2, section.view").first().waitFor();

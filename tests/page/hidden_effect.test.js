@@ -34,11 +34,19 @@ test("dropped files and chosen files are the same draft", async () => {
     return transfer;
   }, files);
   await page.dispatchEvent(".drop", "drop", { dataTransfer: dropped });
-  await page.locator(".card.file").nth(files.length - 1).waitFor();
+  await page
+    .locator(".card.file")
+    .nth(files.length - 1)
+    .waitFor();
   const names = await page.locator(".card.file b").allTextContents();
   for (const name of names) await page.getByRole("button", { name: `remove ${name}` }).click();
-  await page.locator('input[type="file"]').setInputFiles(files.map(({ text, ...file }) => ({ ...file, buffer: Buffer.from(text) })));
-  await page.locator(".card.file").nth(files.length - 1).waitFor();
+  await page
+    .locator('input[type="file"]')
+    .setInputFiles(files.map(({ text, ...file }) => ({ ...file, buffer: Buffer.from(text) })));
+  await page
+    .locator(".card.file")
+    .nth(files.length - 1)
+    .waitFor();
   assert.deepEqual((await page.locator(".card.file b").allTextContents()).sort(), names.sort());
   await shot(page, "hidden-new");
 });
@@ -93,11 +101,18 @@ test("an explanation shows what it predicts before it is computed, and a click a
   const hidden = await page.locator(".ghosts").evaluate((ghosts) => ghosts.scrollHeight - ghosts.clientHeight);
   assert.ok(hidden <= 0, `${hidden} px of the pictures are hidden`);
   await page.setViewportSize({ width: 400, height: 800 });
-  const apart = await page.locator(".explanations tbody tr").evaluateAll((rows) => rows.map((row) => {
-    const [probability, strength] = [".number", "td:nth-child(4)"].map((part) => row.querySelector(part)?.getBoundingClientRect());
-    return strength ? strength.left - probability.right : 1;
-  }));
-  assert.ok(apart.every((gap) => gap > 0), JSON.stringify(apart));
+  const apart = await page.locator(".explanations tbody tr").evaluateAll((rows) =>
+    rows.map((row) => {
+      const [probability, strength] = [".number", "td:nth-child(4)"].map((part) =>
+        row.querySelector(part)?.getBoundingClientRect(),
+      );
+      return strength ? strength.left - probability.right : 1;
+    }),
+  );
+  assert.ok(
+    apart.every((gap) => gap > 0),
+    JSON.stringify(apart),
+  );
   await page.setViewportSize({ width: 1280, height: 900 });
   await page.getByRole("button", { name: "add janosi_hanamoto" }).click();
   await page.getByRole("button", { name: "Not now" }).click();
@@ -118,15 +133,27 @@ test("the story begins with the error before and after, and the picture of both 
   const words = (value) => value.toPrecision(value < 1 ? 2 : 3);
   const row = await found.locator("tr", { hasText: "Drawbar pull" }).textContent();
   assert.ok(row.includes(`${words(before)}\u00a0→\u00a0${words(now)}\u00a0N`), row);
-  assert.match(await found.locator("h2").textContent(), / of held-out runs: error [\d.]+\u00a0→\u00a0[\d.]+\u00a0N.* with one more effect\.$/);
-  assert.match(await found.textContent(), /shear stress needs displacement along the rim to build up, shear modulus 9\.\d+ ± 0\.\d+ mm/);
+  assert.match(
+    await found.locator("h2").textContent(),
+    / of held-out runs: error [\d.]+\u00a0→\u00a0[\d.]+\u00a0N.* with one more effect\.$/,
+  );
+  assert.match(
+    await found.textContent(),
+    /shear stress needs displacement along the rim to build up, shear modulus 9\.\d+ ± 0\.\d+ mm/,
+  );
   await found.locator(".model path").first().waitFor({ state: "attached" });
   // A screen of 800 lines shows what was wrong, what was missing, how sure that is and what it bought, with the picture.
   for (const part of ["h2", "b", ".errors", ".bars", ".plot svg"]) {
     const { y, height } = await found.locator(part).first().boundingBox();
     assert.ok(y + height <= 800, `${part} ends at ${y + height} px`);
   }
-  assert.equal(await found.locator(".legend").getByText(/^(base|with janosi_hanamoto)$/).count(), 2);
+  assert.equal(
+    await found
+      .locator(".legend")
+      .getByText(/^(base|with janosi_hanamoto)$/)
+      .count(),
+    2,
+  );
   assert.ok((await page.locator(".three > .card").last().locator("> ol > li").count()) <= 3);
   await shot(page, "hidden-story");
 });
@@ -138,7 +165,10 @@ test("the error falls, and the models are layers", async () => {
   const { ledger } = await service.get(`/v1/studies/${id}`);
   const [base, extended] = ledger.map((line) => line.error.holdout.all.rmse_fixed_sigma);
   const pull = ledger.at(-1).error.holdout.drawbar_pull.rmse;
-  assert.match(await page.locator("table", { hasText: "with janosi_hanamoto" }).first().textContent(), new RegExp(pull.toPrecision(3).replace(".", "\\.")));
+  assert.match(
+    await page.locator("table", { hasText: "with janosi_hanamoto" }).first().textContent(),
+    new RegExp(pull.toPrecision(3).replace(".", "\\.")),
+  );
   assert.ok(extended < base, `held out, the extension errs by ${extended} noise sds, the base by ${base}`);
   const layers = page.getByRole("group", { name: "Models that are shown" }).getByRole("button");
   assert.equal(await layers.count(), 2);
@@ -154,8 +184,13 @@ test("the error falls, and the models are layers", async () => {
 
 test("sliders of the parameters move the curves of the model", async () => {
   await view(page, "Compare");
-  const { parameters } = await service.get(`/v1/studies/${studyOf(page)}`).then(({ current }) => service.get(`/v1/calibrations/${current}/response-surface`));
-  assert.ok(parameters.some(({ name }) => name.startsWith("janosi_hanamoto.")), "no slider for the strength of the effect");
+  const { parameters } = await service
+    .get(`/v1/studies/${studyOf(page)}`)
+    .then(({ current }) => service.get(`/v1/calibrations/${current}/response-surface`));
+  assert.ok(
+    parameters.some(({ name }) => name.startsWith("janosi_hanamoto.")),
+    "no slider for the strength of the effect",
+  );
   await moveSliders(page, parameters.length);
   await shot(page, "hidden-sliders");
 });
@@ -172,11 +207,20 @@ test("sliders predict what nobody measured, and say where the fitted runs end", 
   const number = async (label) => Number(await page.getByLabel(label, { exact: true }).inputValue());
   const [slip, load, rim] = [await number("slip"), await number("wheel load"), await number("speed of the rim")];
   const plan = `slip,wheel_load_n,sled_speed_m_s\n${slip},${load},${rim * (1 - slip)}\n`;
-  const answer = await service.post(`/v1/calibrations/${current}/predict`, { plan, statements: ["drawbar_pull_n > 10"] });
+  const answer = await service.post(`/v1/calibrations/${current}/predict`, {
+    plan,
+    statements: ["drawbar_pull_n > 10"],
+  });
   const pull = answer.runs[0].quantities.find((q) => q.name === "drawbar_pull_n").models_mean;
-  const shown = async () => Number((await values.locator("tr", { hasText: "Drawbar pull" }).locator("td").first().textContent()).replace("−", "-"));
+  const shown = async () =>
+    Number(
+      (await values.locator("tr", { hasText: "Drawbar pull" }).locator("td").first().textContent()).replace("−", "-"),
+    );
   assert.ok(Math.abs((await shown()) / pull - 1) < 0.01, `${await shown()} is not ${pull}`);
-  assert.ok(rows.some((row) => row.wheel_load_n === load), "the sliders begin at a load that was run");
+  assert.ok(
+    rows.some((row) => row.wheel_load_n === load),
+    "the sliders begin at a load that was run",
+  );
   await page.getByLabel("limit [N]").fill("10");
   await page.getByText(/^P [\d<>. ]+$/).waitFor();
   const p = answer.runs[0].statements[0].measurement;
@@ -196,14 +240,23 @@ test("sliders predict what nobody measured, and say where the fitted runs end", 
 
 test("a condition that the model refuses at every slip is said with its reason in the place of the curve", async () => {
   const reason = "no_support: condition 3: the soil carries at most 80 N of the 140 N wheel load";
-  const refused = (/** @type {any} */ run) => ({ ...run, quantities: [], statements: [], refused: { draws: 40, of: 40, reason } });
+  const refused = (/** @type {any} */ run) => ({
+    ...run,
+    quantities: [],
+    statements: [],
+    refused: { draws: 40, of: 40, reason },
+  });
   await page.route("**/predict", async (route) => {
     const answer = await (await route.fetch()).json();
     await route.fulfill({ json: { ...answer, runs: answer.runs.map(refused) } });
   });
   await view(page, "Story");
   await view(page, "Predict");
-  await page.getByText(/The model refuses every slip from 0 to 0\.\d+ at \S+ N, .*: the soil carries at most 80 N of the 140 N wheel load \(at 40 of 40 draws\)/).waitFor();
+  await page
+    .getByText(
+      /The model refuses every slip from 0 to 0\.\d+ at \S+ N, .*: the soil carries at most 80 N of the 140 N wheel load \(at 40 of 40 draws\)/,
+    )
+    .waitFor();
   assert.equal(await page.locator(".view.predict [aria-busy]").count(), 0);
   await page.unroute("**/predict");
 });

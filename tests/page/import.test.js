@@ -44,7 +44,9 @@ test("what the file does not state is marked at its field", async () => {
 test("a wrong unit is complained about at its field, with the cell", async () => {
   await page.getByLabel("wheel of all rows", { exact: true }).fill("w");
   await page.getByLabel("soil of all rows", { exact: true }).fill("s");
-  await page.getByLabel("radius with which the rig converts slip to rim speed of all rows", { exact: true }).fill("125");
+  await page
+    .getByLabel("radius with which the rig converts slip to rim speed of all rows", { exact: true })
+    .fill("125");
   await choose("unit of radius with which the rig converts slip to rim speed", "mm");
   await page.getByRole("button", { name: "Use these 40 runs" }).waitFor();
   await choose("unit of slip", "1");
@@ -98,7 +100,12 @@ test("the runs are those of the command, and become a calibration", async () => 
 
 test("a text in another encoding keeps its letters, and a file that is no table says so", async () => {
   await page.getByRole("link", { name: "New calibration" }).first().click();
-  await files(buffer("Sand.csv", "Versuch;Schlupf [%];Last [N];Geschwindigkeit [mm/s];Einsinkung [mm];Prüfstand\nA;20;100;8;5,5;Jürgen\nB;30;100;8;6,5;Zoë\n"));
+  await files(
+    buffer(
+      "Sand.csv",
+      "Versuch;Schlupf [%];Last [N];Geschwindigkeit [mm/s];Einsinkung [mm];Prüfstand\nA;20;100;8;5,5;Jürgen\nB;30;100;8;6,5;Zoë\n",
+    ),
+  );
   await page.getByLabel("wheel of all rows", { exact: true }).fill("w");
   await page.getByLabel("soil of all rows", { exact: true }).fill("s");
   await page.getByText("kept as notes, no columns of runs.csv: Prüfstand").waitFor();
@@ -111,7 +118,11 @@ test("a text in another encoding keeps its letters, and a file that is no table 
 test("a row of means is left out by a click, and words hold runs out", async () => {
   await page.goto(`${service.url}/#/`);
   await page.getByRole("link", { name: "New calibration" }).first().click();
-  await files({ name: "Messung.csv", mimeType: "text/csv", buffer: await readFile("tests/data/german-table/Messung.csv") });
+  await files({
+    name: "Messung.csv",
+    mimeType: "text/csv",
+    buffer: await readFile("tests/data/german-table/Messung.csv"),
+  });
   const wheel = page.locator('[data-field="wheel"]');
   await wheel.waitFor();
   assert.equal(await wheel.textContent(), "Which wheel? Choose its column, or give one name for all rows.");
@@ -138,7 +149,9 @@ test("the runs that the words hold out judge the calibration", async () => {
   await page.getByRole("button", { name: "Use these 40 runs" }).click();
   await page.getByText("Wheel and noise").waitFor();
   const experiment = await readFile("tests/data/nothing-hidden/experiment.toml", "utf8");
-  const job = (await readFile("examples/import-german/job.toml", "utf8")).replace("[sampler]", '[sampler]\nalgorithm = "lm"').replace(/\[discovery\][^[]*/, "");
+  const job = (await readFile("examples/import-german/job.toml", "utf8"))
+    .replace("[sampler]", '[sampler]\nalgorithm = "lm"')
+    .replace(/\[discovery\][^[]*/, "");
   await files(buffer("experiment.toml", experiment), buffer("job.toml", job));
   await page.getByLabel("Tags").fill("dry");
   // A description that is not kept is no failed submission: a second click would begin a second study.
@@ -152,13 +165,20 @@ test("the runs that the words hold out judge the calibration", async () => {
   await page.waitForURL(/studies\/\d+\/live/);
   const study = await service.finished(studyOf(page));
   assert.equal(study.state, "finished");
-  const { rows } = await service.get(`/v1/calibrations/${study.calibrations[0].id ?? study.calibrations[0]}/comparison`);
+  const { rows } = await service.get(
+    `/v1/calibrations/${study.calibrations[0].id ?? study.calibrations[0]}/comparison`,
+  );
   assert.equal(new Set(rows.filter((row) => row.use === "holdout").map((row) => row.run)).size, 16);
 });
 
 test("blank cells of a block take the value above by a click, and keep none by another", async () => {
   await page.getByRole("link", { name: "New calibration" }).first().click();
-  await files(buffer("Block.csv", "Versuch;Rad;Boden;Schlupf [%];Last [N];Geschwindigkeit [mm/s];Einsinkung [mm]\nA;w;s;20;100;8;5,5\nB;w;s;30;;8;6,5\nC;w;s;40;;8;7,5\n"));
+  await files(
+    buffer(
+      "Block.csv",
+      "Versuch;Rad;Boden;Schlupf [%];Last [N];Geschwindigkeit [mm/s];Einsinkung [mm]\nA;w;s;20;100;8;5,5\nB;w;s;30;;8;6,5\nC;w;s;40;;8;7,5\n",
+    ),
+  );
   const fill = page.getByRole("button", { name: "Blank cells have the value above" });
   await fill.click();
   await page.getByRole("button", { name: "Use these 3 runs" }).waitFor();

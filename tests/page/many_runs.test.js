@@ -10,14 +10,25 @@ const RUNS = 1000;
 const MOST_ELEMENTS = 3000;
 /** Every view, with what it has once it is drawn. */
 const VIEWS = {
-  Story: ".plot svg", "Where it fails": ".plot svg", "Missing effect": ".plot svg", Posterior: ".plot svg", Predict: ".plot svg",
-  "Error falls": ".plot svg", "How far to trust it": "table", Decide: ".empty", Live: "table", Compare: ".plot svg",
+  Story: ".plot svg",
+  "Where it fails": ".plot svg",
+  "Missing effect": ".plot svg",
+  Posterior: ".plot svg",
+  Predict: ".plot svg",
+  "Error falls": ".plot svg",
+  "How far to trust it": "table",
+  Decide: ".empty",
+  Live: "table",
+  Compare: ".plot svg",
 };
 let service, tab, page, study;
 
 /** The runs of the example again and again, each a little off; the same in every run of the test. */
 function manyRuns(text) {
-  const [head, ...runs] = text.trim().split("\n").filter((line) => !line.startsWith("#"));
+  const [head, ...runs] = text
+    .trim()
+    .split("\n")
+    .filter((line) => !line.startsWith("#"));
   const [name, slip, pull] = ["run", "slip", "drawbar_pull_n"].map((column) => head.split(",").indexOf(column));
   const rows = Array.from({ length: RUNS }, (_, k) => {
     const cells = runs[k % runs.length].split(",");
@@ -33,8 +44,13 @@ function manyRuns(text) {
 before(async () => {
   service = await Service.start();
   const texts = Object.fromEntries((await filesOf("examples/hidden-effect")).map(({ name, text }) => [name, text]));
-  const { id } = await service.post("/v1/experiments", { toml: texts["experiment.toml"], files: { "runs.csv": manyRuns(texts["runs.csv"]) } });
-  const toml = texts["job.toml"].replace("[sampler]", '[sampler]\nalgorithm = "lm"').replace(/\[discovery\][\s\S]*/, "");
+  const { id } = await service.post("/v1/experiments", {
+    toml: texts["experiment.toml"],
+    files: { "runs.csv": manyRuns(texts["runs.csv"]) },
+  });
+  const toml = texts["job.toml"]
+    .replace("[sampler]", '[sampler]\nalgorithm = "lm"')
+    .replace(/\[discovery\][\s\S]*/, "");
   const created = await service.post("/v1/calibrations", { experiment: id, toml, files: {}, name: "many" });
   study = created.study;
   assert.equal((await service.finished(study)).state, "finished");
@@ -76,7 +92,10 @@ test("a run among a thousand lights up where it is pointed at, and a click choos
   await page.mouse.move(box.x + 0.6 * box.width, box.y + 40);
   await page.locator('figure:not([data-figure$="residuals"]) .merged .lit').first().waitFor({ state: "attached" });
   await page.mouse.click(box.x + 0.6 * box.width, box.y + 40);
-  await page.getByRole("complementary", { name: "Chosen runs" }).getByText(/^run m\d{4}$/).waitFor();
+  await page
+    .getByRole("complementary", { name: "Chosen runs" })
+    .getByText(/^run m\d{4}$/)
+    .waitFor();
   await page.getByRole("button", { name: "Let them go" }).click();
   await page.mouse.move(2, 2);
   await page.locator(".lit").first().waitFor({ state: "detached" });

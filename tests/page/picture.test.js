@@ -34,33 +34,41 @@ async function submitted() {
   const texts = Object.fromEntries((await filesOf(FOLDER)).map(({ name, text }) => [name, text]));
   const { "job.toml": job, "experiment.toml": experiment, ...files } = texts;
   const { id } = await service.post("/v1/experiments", { toml: experiment, files });
-  return (await service.post("/v1/calibrations", { experiment: id, toml: job, files: {}, name: "hidden-effect" })).study;
+  return (await service.post("/v1/calibrations", { experiment: id, toml: job, files: {}, name: "hidden-effect" }))
+    .study;
 }
 
 /** Share of the pixels that differ, of two pictures that are drawn small; 1 where their sizes differ. */
-const difference = (page, pictures) => page.evaluate(async (sources) => {
-  const images = await Promise.all(sources.map(async (source) => {
-    const image = new Image();
-    image.src = `data:image/png;base64,${source}`;
-    await image.decode();
-    return image;
-  }));
-  const [before, now] = images;
-  if (before.width !== now.width || before.height !== now.height) return 1;
-  const width = 160, height = Math.round((width * now.height) / now.width);
-  const [a, b] = images.map((image) => {
-    const canvas = Object.assign(document.createElement("canvas"), { width, height });
-    const context = canvas.getContext("2d");
-    context.imageSmoothingQuality = "high";
-    context.drawImage(image, 0, 0, width, height);
-    return context.getImageData(0, 0, width, height).data;
-  });
-  let differing = 0;
-  for (let k = 0; k < a.length; k += 4) {
-    if ([0, 1, 2].some((c) => Math.abs(a[k + c] - b[k + c]) > 32)) differing += 1;
-  }
-  return differing / (a.length / 4);
-}, pictures.map((bytes) => bytes.toString("base64")));
+const difference = (page, pictures) =>
+  page.evaluate(
+    async (sources) => {
+      const images = await Promise.all(
+        sources.map(async (source) => {
+          const image = new Image();
+          image.src = `data:image/png;base64,${source}`;
+          await image.decode();
+          return image;
+        }),
+      );
+      const [before, now] = images;
+      if (before.width !== now.width || before.height !== now.height) return 1;
+      const width = 160,
+        height = Math.round((width * now.height) / now.width);
+      const [a, b] = images.map((image) => {
+        const canvas = Object.assign(document.createElement("canvas"), { width, height });
+        const context = canvas.getContext("2d");
+        context.imageSmoothingQuality = "high";
+        context.drawImage(image, 0, 0, width, height);
+        return context.getImageData(0, 0, width, height).data;
+      });
+      let differing = 0;
+      for (let k = 0; k < a.length; k += 4) {
+        if ([0, 1, 2].some((c) => Math.abs(a[k + c] - b[k + c]) > 32)) differing += 1;
+      }
+      return differing / (a.length / 4);
+    },
+    pictures.map((bytes) => bytes.toString("base64")),
+  );
 
 /** What a picture file says of itself: text chunks as the format PNG has them, after the pixels. */
 const KEY = "Description\0\0\0\0\0";
@@ -107,13 +115,22 @@ test("the picture in the README is that of the page", async () => {
   if (process.env.PICTURE === "write") await writeFile(PICTURE, taken);
   const kept = await readFile(PICTURE);
   assert.ok(kept.length < MOST_BYTES, `docs/page.png has ${kept.length} bytes`);
-  assert.equal(textOf(kept), textOf(taken), "docs/page.png shows other words than the page; tests/page/run with PICTURE=write takes it again");
+  assert.equal(
+    textOf(kept),
+    textOf(taken),
+    "docs/page.png shows other words than the page; tests/page/run with PICTURE=write takes it again",
+  );
   // A document of its own: the policy of the page forbids pictures as data.
   const blank = await tab.context.newPage();
   const share = await difference(blank, [kept, taken]);
-  assert.ok(share < MOST_SHARE, `${(100 * share).toFixed(1)} % of docs/page.png differs from the page; tests/page/run with PICTURE=write takes it again`);
+  assert.ok(
+    share < MOST_SHARE,
+    `${(100 * share).toFixed(1)} % of docs/page.png differs from the page; tests/page/run with PICTURE=write takes it again`,
+  );
   // The comparison can fail: the page without its cards is another picture.
-  await page.addStyleTag({ content: ".headline, .three { display: none }" }).catch(() => page.evaluate(() => document.querySelectorAll(".headline, .three").forEach((part) => part.remove())));
+  await page
+    .addStyleTag({ content: ".headline, .three { display: none }" })
+    .catch(() => page.evaluate(() => document.querySelectorAll(".headline, .three").forEach((part) => part.remove())));
   const other = await page.screenshot();
   assert.ok((await difference(blank, [taken, other])) > MOST_SHARE, "a page without its cards passes for the same");
 });

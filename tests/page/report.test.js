@@ -28,7 +28,10 @@ async function opened(file, options) {
   return tab;
 }
 
-for (const [theme, width] of [["light", 1280], ["dark", 400]]) {
+for (const [theme, width] of [
+  ["light", 1280],
+  ["dark", 400],
+]) {
   test(`the report tells its story without asking anybody, ${theme}, ${width} px`, async () => {
     const tab = await opened(join(folder, "out", "report.html"), { theme, width });
     const { page } = tab;
@@ -37,10 +40,21 @@ for (const [theme, width] of [["light", 1280], ["dark", 400]]) {
       for (const id of ["live", "compare", "failures", "posterior", "predict", "errors"]) {
         await page.locator(`section#${id} figure .plot svg`).first().waitFor({ state: "attached" });
       }
-      assert.equal(await page.locator(".error").count(), 0, await page.locator(".error").first().textContent().catch(() => ""));
+      assert.equal(
+        await page.locator(".error").count(),
+        0,
+        await page
+          .locator(".error")
+          .first()
+          .textContent()
+          .catch(() => ""),
+      );
       assert.deepEqual(await findings(page), []);
       assert.equal(await sideways(page), 0);
-      assert.deepEqual(tab.requests.filter((url) => !/^(file|data|blob):/.test(url)), []);
+      assert.deepEqual(
+        tab.requests.filter((url) => !/^(file|data|blob):/.test(url)),
+        [],
+      );
       assert.equal(tab.requests.filter((url) => url.startsWith("file:")).length, 1);
       assert.deepEqual(tab.faults, []);
       await shot(page, `report-${theme}-${width}`);
@@ -56,8 +70,13 @@ test("a summary of two pages is printed, with the story first", async () => {
   try {
     await page.locator("section#story figure .plot svg").first().waitFor();
     await page.locator("section#compare figure .plot svg").first().waitFor();
-    assert.match(await page.locator("header").textContent(), /20\d\d-\d\d-\d\d; 24 fitted runs, 16 held out; wheel w; slip 0.05 to 0.7, load 60 to 150 N, speed 4 to 76 mm\/s; Grouser \d/);
-    await page.evaluate(() => { globalThis.print = () => document.body.classList.add("asked"); });
+    assert.match(
+      await page.locator("header").textContent(),
+      /20\d\d-\d\d-\d\d; 24 fitted runs, 16 held out; wheel w; slip 0.05 to 0.7, load 60 to 150 N, speed 4 to 76 mm\/s; Grouser \d/,
+    );
+    await page.evaluate(() => {
+      globalThis.print = () => document.body.classList.add("asked");
+    });
     await page.getByRole("button", { name: "Print a summary" }).click();
     assert.equal(await page.locator("body.brief.asked").count(), 1);
     const pdf = await page.pdf({ format: "A4" });
@@ -86,7 +105,10 @@ test("sliders of conditions move the prediction in the report, too, without aski
   try {
     const section = page.locator("section#predict");
     const values = section.getByRole("region", { name: "Predictions at the chosen condition" });
-    const pull = async () => Number((await values.locator("tr", { hasText: "Drawbar pull" }).locator("td").first().textContent()).replace("−", "-"));
+    const pull = async () =>
+      Number(
+        (await values.locator("tr", { hasText: "Drawbar pull" }).locator("td").first().textContent()).replace("−", "-"),
+      );
     const [before, curve] = [await pull(), await section.locator("figure .plot svg").innerHTML()];
     await section.getByText(/Interpolated between conditions that were computed with \d+ draws/).waitFor();
     const began = await page.evaluate(() => performance.now());
@@ -96,7 +118,10 @@ test("sliders of conditions move the prediction in the report, too, without aski
     assert.notEqual(await section.locator("figure .plot svg").innerHTML(), curve);
     assert.ok((await page.evaluate(() => performance.now())) - began < 5000);
     assert.deepEqual(await findings(page), []);
-    assert.deepEqual(tab.requests.filter((url) => !/^(file|data|blob):/.test(url)), []);
+    assert.deepEqual(
+      tab.requests.filter((url) => !/^(file|data|blob):/.test(url)),
+      [],
+    );
     assert.deepEqual(tab.faults, []);
     await shot(page, "report-predict");
   } finally {

@@ -25,7 +25,8 @@ async function freePort() {
 /** Runs the coordinator to its end and returns what it prints. */
 export async function coordinator(...parameters) {
   const child = spawn(PROGRAM, parameters, { stdio: ["ignore", "pipe", "pipe"] });
-  let out = "", errors = "";
+  let out = "",
+    errors = "";
   child.stdout.on("data", (text) => (out += text));
   child.stderr.on("data", (text) => (errors += text));
   const [code] = await once(child, "close");
@@ -51,9 +52,19 @@ export class Service {
 
   /** Starts it (again) on the same port and store. */
   async restart() {
-    this.child = spawn(PROGRAM, ["serve", "--listen", `127.0.0.1:${this.port}`, "--store", this.store, "--local-workers", "1"], { stdio: "ignore" });
+    this.child = spawn(
+      PROGRAM,
+      ["serve", "--listen", `127.0.0.1:${this.port}`, "--store", this.store, "--local-workers", "1"],
+      { stdio: "ignore" },
+    );
     for (const end = Date.now() + START_MS; ; await sleep(LOOK_MS)) {
-      if (await fetch(`${this.url}/openapi.json`).then((r) => r.status < 500, () => false)) return;
+      if (
+        await fetch(`${this.url}/openapi.json`).then(
+          (r) => r.status < 500,
+          () => false,
+        )
+      )
+        return;
       if (Date.now() > end) throw new Error(`the coordinator does not answer after ${START_MS} ms`);
     }
   }
@@ -76,7 +87,11 @@ export class Service {
   }
 
   async post(path, body) {
-    const response = await fetch(this.url + path, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body) });
+    const response = await fetch(this.url + path, {
+      method: "POST",
+      headers: { "content-type": "application/json" },
+      body: JSON.stringify(body),
+    });
     if (!response.ok) throw new Error(`POST ${path}: ${response.status} ${await response.text()}`);
     return response.json();
   }
@@ -94,8 +109,10 @@ export class Service {
 /** The files of an example as the page takes them, with `edit(text of the job)` in place of the job. */
 export async function filesOf(folder, edit = (job) => job, names = null) {
   const all = names ?? (await readdir(folder)).filter((name) => /\.(toml|csv)$/.test(name));
-  return Promise.all(all.map(async (name) => {
-    const text = await readFile(join(folder, name), "utf8");
-    return { name: basename(name), mimeType: "text/plain", text: name === "job.toml" ? edit(text) : text };
-  }));
+  return Promise.all(
+    all.map(async (name) => {
+      const text = await readFile(join(folder, name), "utf8");
+      return { name: basename(name), mimeType: "text/plain", text: name === "job.toml" ? edit(text) : text };
+    }),
+  );
 }

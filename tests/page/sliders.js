@@ -9,10 +9,13 @@ const shapes = (place) => place.locator(".moving path").evaluateAll((all) => all
 
 /** Waits until the curves are others than these, and returns them. */
 async function moved(place, before) {
-  await place.page().waitForFunction(
-    ([selector, old]) => [...document.querySelectorAll(selector)].map((path) => path.getAttribute("d")).join() !== old,
-    ["details.sliders .moving path", before.join()],
-  );
+  await place
+    .page()
+    .waitForFunction(
+      ([selector, old]) =>
+        [...document.querySelectorAll(selector)].map((path) => path.getAttribute("d")).join() !== old,
+      ["details.sliders .moving path", before.join()],
+    );
   return shapes(place);
 }
 
@@ -41,7 +44,10 @@ export async function moveSliders(page, count) {
   assert.notEqual(await errors.textContent(), startErrors);
   assert.match(await status.textContent(), /^Beyond the draws/);
   assert.ok((await place.locator(".moving.beyond").count()) > 0);
-  const dash = await place.locator(".moving.beyond").first().evaluate((curves) => getComputedStyle(curves).strokeDasharray);
+  const dash = await place
+    .locator(".moving.beyond")
+    .first()
+    .evaluate((curves) => getComputedStyle(curves).strokeDasharray);
   assert.notEqual(dash, "none");
   assert.deepEqual(await findings(page), []);
   await place.getByRole("button", { name: "Reset to the posterior mean" }).click();

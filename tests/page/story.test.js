@@ -11,8 +11,16 @@ let service;
 /** Submits a folder's job and returns its first calibration and study, once the study is over. */
 async function over(folder, edit) {
   const texts = Object.fromEntries((await filesOf(folder, edit)).map(({ name, text }) => [name, text]));
-  const { id } = await service.post("/v1/experiments", { toml: texts["experiment.toml"], files: { "runs.csv": texts["runs.csv"] } });
-  const created = await service.post("/v1/calibrations", { experiment: id, toml: texts["job.toml"], files: {}, name: folder.split("/").at(-1) });
+  const { id } = await service.post("/v1/experiments", {
+    toml: texts["experiment.toml"],
+    files: { "runs.csv": texts["runs.csv"] },
+  });
+  const created = await service.post("/v1/calibrations", {
+    experiment: id,
+    toml: texts["job.toml"],
+    files: {},
+    name: folder.split("/").at(-1),
+  });
   await service.finished(created.study);
   return created;
 }
@@ -22,10 +30,15 @@ before(async () => {
 });
 after(() => service?.stop());
 
-for (const [theme, width] of [["light", 1280], ["dark", 400]]) {
+for (const [theme, width] of [
+  ["light", 1280],
+  ["dark", 400],
+]) {
   test(`a failed study says why, and what to do, ${theme}, ${width} px`, async () => {
     // A soil like water carries no wheel.
-    const { study } = await over("examples/hidden-effect", (job) => job.replace("log10_p_ref = { uniform = [4.0, 5.6] }", "log10_p_ref = { uniform = [1.1, 1.6] }"));
+    const { study } = await over("examples/hidden-effect", (job) =>
+      job.replace("log10_p_ref = { uniform = [4.0, 5.6] }", "log10_p_ref = { uniform = [1.1, 1.6] }"),
+    );
     const tab = await open({ url: service.url, theme, width });
     const { page } = tab;
     try {
@@ -36,12 +49,18 @@ for (const [theme, width] of [["light", 1280], ["dark", 400]]) {
       await page.goto(`${service.url}/#/studies/${study}/story`);
       const card = page.getByRole("alert").filter({ hasText: "The calibration failed" });
       await card.waitFor();
-      assert.match(await card.textContent(), /All 1000 prior draws were rejected by the model: the soil does not carry the load \(no_support.*What to do: Check wheel loads/s);
+      assert.match(
+        await card.textContent(),
+        /All 1000 prior draws were rejected by the model: the soil does not carry the load \(no_support.*What to do: Check wheel loads/s,
+      );
       assert.equal(await page.getByText("Nothing is finished yet").count(), 0);
       // No other view lets people wait for what will not come.
       for (const name of ["compare", "failures", "effects", "posterior", "predict", "decide", "errors", "trust"]) {
         await page.goto(`${service.url}/#/studies/${study}/${name}`);
-        await page.locator(`section.view.${name}`).getByText("The calibration failed, so that there is nothing to show.").waitFor();
+        await page
+          .locator(`section.view.${name}`)
+          .getByText("The calibration failed, so that there is nothing to show.")
+          .waitFor();
       }
       await page.getByRole("link", { name: "The story" }).click();
       await card.waitFor();
@@ -63,10 +82,16 @@ test("the rival of an effect that was added stays in story and list, with the ru
   const { page } = tab;
   try {
     await page.goto(service.url);
-    await page.locator("tr", { hasText: "one-of-a-class" }).getByText("slip_softened_pressure (P 0.46) in place of slip_sinkage cannot be excluded").waitFor();
+    await page
+      .locator("tr", { hasText: "one-of-a-class" })
+      .getByText("slip_softened_pressure (P 0.46) in place of slip_sinkage cannot be excluded")
+      .waitFor();
     await page.getByText("nothing further is detectable").first().waitFor();
     await page.goto(`${service.url}/#/studies/${study}/story?model=${id}`);
-    assert.match(await page.locator(".headline h2").textContent(), /\(sinkage of held-out runs: error 1\.10\u00a0mm, noise 0\.60\u00a0mm\)/);
+    assert.match(
+      await page.locator(".headline h2").textContent(),
+      /\(sinkage of held-out runs: error 1\.10\u00a0mm, noise 0\.60\u00a0mm\)/,
+    );
     await page.goto(service.url);
     await shot(page, "story-class-home");
     await page.goto(`${service.url}/#/studies/${study}/story`);
@@ -77,7 +102,10 @@ test("the rival of an effect that was added stays in story and list, with the ru
     const missing = page.locator(".card", { hasText: "What is missing" });
     await missing.waitFor();
     const text = await missing.textContent();
-    assert.match(text, /slip_sinkage \(P 0\.54\) is added.*slip_softened_pressure \(P 0\.46\) in place of slip_sinkage cannot be excluded\.\s*Slip 0\.80 under 280 N/i);
+    assert.match(
+      text,
+      /slip_sinkage \(P 0\.54\) is added.*slip_softened_pressure \(P 0\.46\) in place of slip_sinkage cannot be excluded\.\s*Slip 0\.80 under 280 N/i,
+    );
     assert.equal(await page.getByText("It could also be").count(), 0);
     await shot(page, "story-class");
     // The runs are those of the search that left it open, and are added to the model that was searched.

@@ -12,8 +12,14 @@ let service, tab, page;
 before(async () => {
   service = await Service.start();
   const texts = Object.fromEntries((await filesOf(FOLDER)).map(({ name, text }) => [name, text]));
-  const { id } = await service.post("/v1/experiments", { toml: texts["experiment.toml"], files: { "runs.csv": texts["runs.csv"] } });
-  for (const [name, seed] of [["monday", 1], ["tuesday", 2]]) {
+  const { id } = await service.post("/v1/experiments", {
+    toml: texts["experiment.toml"],
+    files: { "runs.csv": texts["runs.csv"] },
+  });
+  for (const [name, seed] of [
+    ["monday", 1],
+    ["tuesday", 2],
+  ]) {
     const toml = texts["job.toml"].replace(/seed = \d+/, `seed = ${seed}`);
     const { study } = await service.post("/v1/calibrations", { experiment: id, toml, files: {}, name });
     await service.finished(study);
@@ -32,7 +38,11 @@ test("a study is begun again from its files", async () => {
   await page.goto(`${service.url}/#/studies/1/story`);
   await page.getByRole("link", { name: "Edit and start again" }).click();
   await page.locator(".card.file").nth(2).waitFor();
-  assert.deepEqual((await page.locator(".card.file b").allTextContents()).sort(), ["experiment.toml", "job.toml", "runs.csv"]);
+  assert.deepEqual((await page.locator(".card.file b").allTextContents()).sort(), [
+    "experiment.toml",
+    "job.toml",
+    "runs.csv",
+  ]);
   assert.equal(await page.getByLabel("Name").inputValue(), "monday");
   assert.ok(await page.getByRole("button", { name: "Start the calibration" }).isEnabled());
 });

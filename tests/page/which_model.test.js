@@ -18,7 +18,10 @@ before(async () => {
 });
 after(() => rm(folder, { recursive: true, force: true }));
 
-for (const [theme, width] of [["light", 1280], ["dark", 400]]) {
+for (const [theme, width] of [
+  ["light", 1280],
+  ["dark", 400],
+]) {
   test(`the chosen model stands first, with what speaks for it, ${theme}, ${width} px`, async () => {
     const url = pathToFileURL(join(folder, "out", "report.html")).href;
     const tab = await open({ url, theme, width });
@@ -31,7 +34,10 @@ for (const [theme, width] of [["light", 1280], ["dark", 400]]) {
       assert.match(await page.locator(".verdict").first().textContent(), /wong_reece is the most probable of 3 models/);
       assert.deepEqual(await rows.locator("th").allTextContents(), ["wong_reece", "quasi_static", "rft"]);
       assert.match(await rows.first().textContent(), /47\.\d+ ± 0\.\d+> 0\.999.*chosen; predicts best/);
-      assert.match(await page.locator("header .note").first().textContent(), /^wong_reece; compared: quasi_static, wong_reece, rft$/);
+      assert.match(
+        await page.locator("header .note").first().textContent(),
+        /^wong_reece; compared: quasi_static, wong_reece, rft$/,
+      );
       assert.deepEqual(await findings(page), []);
       assert.equal(await sideways(page), 0);
       assert.deepEqual(tab.faults, []);
@@ -49,8 +55,13 @@ test("the particles of a model are drawn in the units that the service states", 
   try {
     await page.goto(`${service.url}/#/new`);
     const files = await filesOf("examples/which-model", (job) => job, ["job.toml", "experiment.toml", "runs.csv"]);
-    await page.locator('input[type="file"]').setInputFiles(files.map(({ text, ...file }) => ({ ...file, buffer: Buffer.from(text) })));
-    await page.locator(".card.file").nth(files.length - 1).waitFor();
+    await page
+      .locator('input[type="file"]')
+      .setInputFiles(files.map(({ text, ...file }) => ({ ...file, buffer: Buffer.from(text) })));
+    await page
+      .locator(".card.file")
+      .nth(files.length - 1)
+      .waitFor();
     await page.getByRole("button", { name: "Start the calibration" }).click();
     await page.waitForURL(/live/);
     const study = await service.finished(studyOf(page));

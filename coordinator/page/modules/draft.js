@@ -53,11 +53,14 @@ export function experimentOf(/** @type {Files} */ files, /** @type {string} */ j
 
 /** What a job and its experiment name: the name as it is written, and by whom. */
 export function named(/** @type {Files} */ files, /** @type {string} */ job, /** @type {string | null} */ experiment) {
-  const of = (/** @type {string} */ by, /** @type {string[]} */ keys) => keys.flatMap((key) => strings(files[by] ?? "", key)).map((name) => ({ name, by }));
+  const of = (/** @type {string} */ by, /** @type {string[]} */ keys) =>
+    keys.flatMap((key) => strings(files[by] ?? "", key)).map((name) => ({ name, by }));
   const own = experiment === null ? [] : of(experiment, ["runs", "plates", "shear", "mesh"]);
   const histories = own.flatMap(({ name }) => {
     const file = find(files, name);
-    return file && kindOf(file, files[file]) === "runs" ? recordings(files[file]).map((recording) => ({ name: recording, by: file })) : [];
+    return file && kindOf(file, files[file]) === "runs"
+      ? recordings(files[file]).map((recording) => ({ name: recording, by: file }))
+      : [];
   });
   return { job: of(job, ["effect_files", "posterior"]), experiment: [...own, ...histories] };
 }
@@ -69,19 +72,32 @@ export function missing(/** @type {Files} */ files, /** @type {string | null} */
   const list = named(files, job, experiment);
   const absent = [...list.experiment, ...list.job].filter(({ name }) => find(files, name) === null);
   const words = absent.map(({ name, by }) => t`${name}, which ${by} names`);
-  if (experiment === null) words.unshift(t`${strings(files[job], "experiment")[0] ?? "experiment.toml"}, the experiment of ${job}: it describes wheel, soil and noise`);
+  if (experiment === null)
+    words.unshift(
+      t`${strings(files[job], "experiment")[0] ?? "experiment.toml"}, the experiment of ${job}: it describes wheel, soil
+        and noise`,
+    );
   return [...new Set(words)];
 }
 
 /** The two requests of a calibration, without the files that nobody names. */
 export function requests(/** @type {Files} */ files, /** @type {string} */ job, /** @type {string} */ experiment) {
   const list = named(files, job, experiment);
-  const texts = (/** @type {{ name: string }[]} */ of) => Object.fromEntries(of.map(({ name }) => [name, files[find(files, name) ?? ""] ?? ""]));
-  return { experiment: { toml: files[experiment], files: texts(list.experiment) }, job: { toml: files[job], files: texts(list.job) } };
+  const texts = (/** @type {{ name: string }[]} */ of) =>
+    Object.fromEntries(of.map(({ name }) => [name, files[find(files, name) ?? ""] ?? ""]));
+  return {
+    experiment: { toml: files[experiment], files: texts(list.experiment) },
+    job: { toml: files[job], files: texts(list.job) },
+  };
 }
 
 /** The file that a message of the service is about: the service calls the two TOML files by their usual names. */
-export function fileOf(/** @type {string} */ message, /** @type {Files} */ files, /** @type {string | null} */ job, /** @type {string | null} */ experiment) {
+export function fileOf(
+  /** @type {string} */ message,
+  /** @type {Files} */ files,
+  /** @type {string | null} */ job,
+  /** @type {string | null} */ experiment,
+) {
   const name = /^([^\s:]+\.\w+)[ :]/.exec(message)?.[1];
   if (name === undefined) return null;
   if (name === "job.toml") return job;

@@ -3,33 +3,51 @@
 import { t } from "./language/language.js";
 
 /**
- * @typedef {{ column: string | null, value: string, unit: string, formula: string, fillsDown: boolean, words: Record<string, string> }} Choice
- *   blank: absent. words: what the words of the column mean for the use of a run.
+ * @typedef {{ column: string | null, value: string, unit: string, formula: string, fillsDown: boolean, words:
+ *   Record<string, string> }} Choice blank: absent. words: what the words of the column mean for the use of a run.
  */
-/** @typedef {{ line: number, cells: string[] }} Skipped a row that is left out, with its first cells where they are known */
-/** @typedef {{ sheet: string | null, titleLine: number, unitLine: number | null, decimal: string | null, skipped: Skipped[], fields: Record<string, Choice>, quantities: Record<string, Choice> }} Choices */
+/**
+ * @typedef {{ line: number, cells: string[] }} Skipped a row that is left out, with its first cells where they are
+ *   known
+ */
+/**
+ * @typedef {{ sheet: string | null, titleLine: number, unitLine: number | null, decimal: string | null, skipped:
+ *   Skipped[], fields: Record<string, Choice>, quantities: Record<string, Choice> }} Choices
+ */
 
 const blank = { column: null, value: "", unit: "", formula: "", fillsDown: false, words: {} };
 /** What a word of a column can mean for a run, in the words of a map and of people. @type {[string, string][]} */
-export const MEANINGS = [["fit", t`fitted`], ["holdout", t`held out: never fitted`], ["skip", t`no run: left out`]];
+export const MEANINGS = [
+  ["fit", t`fitted`],
+  ["holdout", t`held out: never fitted`],
+  ["skip", t`no run: left out`],
+];
 /** What is open, in a map. */
 const QUESTION = "?";
 
-/** What the words of a column mean, as proposed; nothing where they are those of runs.csv. @returns {Record<string, string>} */
+/**
+ * What the words of a column mean, as proposed; nothing where they are those of runs.csv.
+ * @returns {Record<string, string>}
+ */
 export function meaningsOf(/** @type {any} */ column) {
   const words = column?.words ?? [];
   return words.every((/** @type {any} */ card) => ["fit", "holdout"].includes(card.word)) ? {} : tableOf(words);
 }
 
-const tableOf = (/** @type {any[]} */ words) => Object.fromEntries(words.map((card) => [card.word, card.means ?? QUESTION]));
+const tableOf = (/** @type {any[]} */ words) =>
+  Object.fromEntries(words.map((card) => [card.word, card.means ?? QUESTION]));
 
 /** The same choices with a row left out. @returns {Choices} */
-export const without = (/** @type {Choices} */ choices, /** @type {Skipped} */ row) => (
-  { ...choices, skipped: [...choices.skipped.filter((other) => other.line !== row.line), row].sort((a, b) => a.line - b.line) });
+export const without = (/** @type {Choices} */ choices, /** @type {Skipped} */ row) => ({
+  ...choices,
+  skipped: [...choices.skipped.filter((other) => other.line !== row.line), row].sort((a, b) => a.line - b.line),
+});
 
 /** The same choices with a row taken in again. @returns {Choices} */
-export const withAgain = (/** @type {Choices} */ choices, /** @type {number} */ line) => (
-  { ...choices, skipped: choices.skipped.filter((row) => row.line !== line) });
+export const withAgain = (/** @type {Choices} */ choices, /** @type {number} */ line) => ({
+  ...choices,
+  skipped: choices.skipped.filter((row) => row.line !== line),
+});
 
 /**
  * What a guess proposes; a unit that the file does not state is left open.
@@ -37,10 +55,23 @@ export const withAgain = (/** @type {Choices} */ choices, /** @type {number} */ 
  * @returns {Choices}
  */
 export function proposed(guess) {
-  const choice = (/** @type {any} */ of) => ({ ...blank, column: of.column ?? null, unit: of.unit ?? "", formula: of.formula ?? "", words: tableOf(of.meanings ?? []) });
+  const choice = (/** @type {any} */ of) => ({
+    ...blank,
+    column: of.column ?? null,
+    unit: of.unit ?? "",
+    formula: of.formula ?? "",
+    words: tableOf(of.meanings ?? []),
+  });
   const byName = (/** @type {any[]} */ list) => Object.fromEntries(list.map((one) => [one.name, choice(one)]));
-  return { sheet: guess.sheet ?? null, titleLine: guess.title_line, unitLine: guess.unit_line ?? null, decimal: guess.decimal ?? null, skipped: [],
-    fields: byName(guess.fields), quantities: byName(guess.quantities) };
+  return {
+    sheet: guess.sheet ?? null,
+    titleLine: guess.title_line,
+    unitLine: guess.unit_line ?? null,
+    decimal: guess.decimal ?? null,
+    skipped: [],
+    fields: byName(guess.fields),
+    quantities: byName(guess.quantities),
+  };
 }
 
 /** A text of TOML in quotes. */
@@ -61,7 +92,14 @@ export function mapOf(guess, choices) {
   const table = (/** @type {string} */ kind, /** @type {any} */ of, /** @type {Choice} */ choice) => {
     const unit = of.units.length === 0 ? [] : [`unit = ${quoted(choice.unit || QUESTION)}`];
     const words = Object.entries(choice.words).map(([word, means]) => `${quoted(word)} = ${quoted(means)}`);
-    if (choice.column !== null) return [`[${kind}.${of.name}]`, `column = ${quoted(choice.column)}`, ...unit, ...(choice.fillsDown ? ["fill_down = true"] : []), ...(words.length > 0 ? [`words = { ${words.join(", ")} }`] : [])];
+    if (choice.column !== null)
+      return [
+        `[${kind}.${of.name}]`,
+        `column = ${quoted(choice.column)}`,
+        ...unit,
+        ...(choice.fillsDown ? ["fill_down = true"] : []),
+        ...(words.length > 0 ? [`words = { ${words.join(", ")} }`] : []),
+      ];
     if (choice.formula !== "") return [`[${kind}.${of.name}]`, `formula = ${quoted(choice.formula)}`];
     if (choice.value !== "") return [`[${kind}.${of.name}]`, `value = ${quoted(choice.value)}`, ...unit];
     return of.is_needed || kind === "quantities" ? [`[${kind}.${of.name}]`, 'value = "?"', ...unit] : [];
@@ -87,7 +125,11 @@ export function byField(complaints, names) {
 
 /** A complaint in words: its place in the file, or nothing where its field says it. */
 export function words(/** @type {any} */ complaint) {
-  const place = complaint.cell ? t`cell ${complaint.cell}` : complaint.line && complaint.file !== "map.toml" ? t`line ${complaint.line}` : "";
+  const place = complaint.cell
+    ? t`cell ${complaint.cell}`
+    : complaint.line && complaint.file !== "map.toml"
+      ? t`line ${complaint.line}`
+      : "";
   const message = complaint.plain ?? complaint.message.replace(`${complaint.field}: `, "");
   return place === "" ? message : `${place}: ${message}`;
 }

@@ -1,5 +1,5 @@
-// How a reader left a view: how far it was scrolled, and which folded parts were open. It is kept with the view's entry in the history of the
-// browser, so that going back finds it.
+// How a reader left a view: how far it was scrolled, and which folded parts were open. It is kept with the view's entry
+// in the history of the browser, so that going back finds it.
 
 /** @typedef {{ top?: number, open?: string[] } | null} Left */
 
@@ -34,7 +34,10 @@ export function keepLeftView() {
   };
 }
 
-/** Goes to the top of a new view, and makes one that is gone back to as it was, as soon as its parts are there. @returns {() => void} ends it */
+/**
+ * Goes to the top of a new view, and makes one that is gone back to as it was, as soon as its parts are there.
+ * @returns {() => void} ends it
+ */
 export function arrive() {
   const { top = 0, open = [] } = /** @type {Left} */ (history.state) ?? {};
   scrollTo(0, top);

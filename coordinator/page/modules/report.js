@@ -19,7 +19,8 @@ import { modelName, modelOf, models } from "./words/model.js";
 const shown = JSON.parse(document.getElementById("shown")?.textContent ?? "{}");
 
 /** The views that the file has numbers for: a decision is made only where one is asked for. */
-const shownViews = (/** @type {any} */ model) => VIEWS.filter((v) => v.name !== "decide" || (model && recorded(path.decision(model.id))));
+const shownViews = (/** @type {any} */ model) =>
+  VIEWS.filter((v) => v.name !== "decide" || (model && recorded(path.decision(model.id))));
 
 function Report() {
   const { answer: study, error } = useAnswer(path.study(shown.study));
@@ -29,26 +30,40 @@ function Report() {
   return html`
     <header class="heading">
       <h1>${study.name}</h1>
-      <p class="note">${[...new Set([study.model_kind, model ? modelName(study, model) : t`no model`])].join(", ")}${lineage(study)}</p>
+      <p class="note">
+        ${[...new Set([study.model_kind, model ? modelName(study, model) : t`no model`])].join(", ")}
+        ${lineage(study)}
+      </p>
       <p class="note">${facts(study, model, provenance)}</p>
       <${Source} campaign=${study.campaign} />
       <p class="print-brief"><button type="button" onClick=${printBrief}>Print a summary of two pages</button></p>
       <${Settings} />
-      <nav class="views" aria-label="Sections">${shownViews(model).map((v) => html`<a href=${`#${v.name}`}>${v.title}</a>`)}</nav>
+      <nav class="views" aria-label="Sections">
+        ${shownViews(model).map((v) => html`<a href=${`#${v.name}`}>${v.title}</a>`)}
+      </nav>
     </header>
-    ${shownViews(model).map((v) => html`
-      <section id=${v.name} class=${`view ${v.name}`}>
-        ${v.name !== "story" && html`<h1 class="section">${v.title}</h1>`}
-        <${Guarded} title=${v.title}><${ShownView} view=${v} study=${study} model=${model} query=${{}} /><//>
-      </section>`)}
-    <${ChosenRuns} study=${study} model=${model} />`;
+    ${shownViews(model).map(
+      (v) => html`
+        <section id=${v.name} class=${`view ${v.name}`}>
+          ${v.name !== "story" && html`<h1 class="section">${v.title}</h1>`}
+          <${Guarded} title=${v.title}><${ShownView} view=${v} study=${study} model=${model} query=${{}} /><//>
+        </section>
+      `,
+    )}
+    <${ChosenRuns} study=${study} model=${model} />
+  `;
 }
 
-/** When it was submitted, with how many runs, and by which program: `2026-11-27; 24 fitted runs, 16 held out; Grouser 0.2.0`. */
+/**
+ * When it was submitted, with how many runs, and by which program: `2026-11-27; 24 fitted runs, 16 held out; Grouser
+ * 0.2.0`.
+ */
 function facts(/** @type {any} */ study, /** @type {any} */ model, /** @type {any} */ provenance) {
   const day = study.created_ms ? new Date(study.created_ms).toISOString().slice(0, 10) : null;
   const line = study.ledger.find((/** @type {any} */ l) => l.calibration === model?.id);
-  return [day, study.details?.author, line && runWords(line), model && campaignWords(model.id), provenance?.program].filter(Boolean).join("; ");
+  return [day, study.details?.author, line && runWords(line), model && campaignWords(model.id), provenance?.program]
+    .filter(Boolean)
+    .join("; ");
 }
 
 /** What the rig was set to: `wheel w; slip 0.05 to 0.6, wheel load 60 to 140 N`. */
@@ -73,12 +88,16 @@ function printBrief() {
 /** The models that were compared, and those that one of them grew into. */
 function lineage(/** @type {any} */ study) {
   const names = (/** @type {any[]} */ members) => members.map((member) => modelName(study, member));
-  const isOther = (/** @type {any} */ member) => member.id !== study.models?.best && study.models?.models.some((/** @type {any} */ m) => m.calibration === member.id);
+  const isOther = (/** @type {any} */ member) =>
+    member.id !== study.models?.best &&
+    study.models?.models.some((/** @type {any} */ m) => m.calibration === member.id);
   const compared = models(study).filter((/** @type {any} */ m) => m.id === study.models?.best || isOther(m));
   const line = models(study).filter((/** @type {any} */ m) => !isOther(m));
   return [
     compared.length > 1 ? t`; compared: ${names(compared).join(", ")}` : "",
-    study.members.length > 1 && line.length > (compared.length > 1 ? 1 : 0) ? t`; models: ${names(line).join(" → ")}` : "",
+    study.members.length > 1 && line.length > (compared.length > 1 ? 1 : 0)
+      ? t`; models: ${names(line).join(" → ")}`
+      : "",
   ].join("");
 }
 

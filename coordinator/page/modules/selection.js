@@ -46,7 +46,8 @@ export function light(/** @type {ParentNode} */ root) {
     element.classList.toggle("lit", lit !== null && lit.runs.has(run));
     element.classList.toggle("chosen", chosen !== null && chosen.runs.has(run));
   }
-  for (const group of root.querySelectorAll(".merged")) group.dispatchEvent(new CustomEvent("light", { detail: lit?.runs ?? null }));
+  for (const group of root.querySelectorAll(".merged"))
+    group.dispatchEvent(new CustomEvent("light", { detail: lit?.runs ?? null }));
 }
 
 /** The runs that are chosen. */

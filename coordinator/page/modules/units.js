@@ -4,14 +4,24 @@ import { kept } from "./kept.js";
 
 /** Sets of units, by name: how a unit in SI is shown, and what one is in it. */
 const SETS = /** @type {Record<string, Record<string, { unit: string, scale: number }>>} */ ({
-  "N, mm, kPa": { m: { unit: "mm", scale: 1000 }, Pa: { unit: "kPa", scale: 0.001 }, "m/s": { unit: "mm/s", scale: 1000 } },
+  "N, mm, kPa": {
+    m: { unit: "mm", scale: 1000 },
+    Pa: { unit: "kPa", scale: 0.001 },
+    "m/s": { unit: "mm/s", scale: 1000 },
+  },
   "kN, mm, kPa": {
-    m: { unit: "mm", scale: 1000 }, Pa: { unit: "kPa", scale: 0.001 }, "m/s": { unit: "mm/s", scale: 1000 },
-    N: { unit: "kN", scale: 0.001 }, "N m": { unit: "kN m", scale: 0.001 },
+    m: { unit: "mm", scale: 1000 },
+    Pa: { unit: "kPa", scale: 0.001 },
+    "m/s": { unit: "mm/s", scale: 1000 },
+    N: { unit: "kN", scale: 0.001 },
+    "N m": { unit: "kN m", scale: 0.001 },
   },
   "lbf, in, psi": {
-    m: { unit: "in", scale: 1 / 0.0254 }, Pa: { unit: "psi", scale: 1 / 6894.757293168 }, "m/s": { unit: "in/s", scale: 1 / 0.0254 },
-    N: { unit: "lbf", scale: 1 / 4.4482216152605 }, "N m": { unit: "lbf ft", scale: 1 / 1.3558179483314 },
+    m: { unit: "in", scale: 1 / 0.0254 },
+    Pa: { unit: "psi", scale: 1 / 6894.757293168 },
+    "m/s": { unit: "in/s", scale: 1 / 0.0254 },
+    N: { unit: "lbf", scale: 1 / 4.4482216152605 },
+    "N m": { unit: "lbf ft", scale: 1 / 1.3558179483314 },
   },
 });
 

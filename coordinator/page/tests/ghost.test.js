@@ -4,8 +4,18 @@ import { test } from "node:test";
 import { likeOf } from "../modules/part/explanations.js";
 import { byChange, withGhost, withoutChange } from "../modules/words/ghost.js";
 
-const ROWS = [{ run: "a", channel: "drawbar_pull", error_sd: 1.2 }, { run: "a", channel: "sinkage", error_sd: 0.0004 }];
-const CURVES = { data: [{ run: "a", channel: "drawbar_pull" }, { run: "a", channel: "sinkage" }], base: [10, 0.005], effects: { slip_sinkage: [11, 0.009] } };
+const ROWS = [
+  { run: "a", channel: "drawbar_pull", error_sd: 1.2 },
+  { run: "a", channel: "sinkage", error_sd: 0.0004 },
+];
+const CURVES = {
+  data: [
+    { run: "a", channel: "drawbar_pull" },
+    { run: "a", channel: "sinkage" },
+  ],
+  base: [10, 0.005],
+  effects: { slip_sinkage: [11, 0.009] },
+};
 
 test("the channels that an explanation changes most, compared with their errors, stand first", () => {
   assert.deepEqual(byChange(ROWS, CURVES, "slip_sinkage").slice(0, 2), ["sinkage", "drawbar_pull"]);
@@ -14,7 +24,13 @@ test("the channels that an explanation changes most, compared with their errors,
 });
 
 test("an explanation is a layer over the model", () => {
-  assert.deepEqual(withGhost(ROWS, CURVES, "slip_sinkage").map(({ name, rows }) => [name, rows[1].predicted]), [["model", undefined], ["slip_sinkage", 0.009]]);
+  assert.deepEqual(
+    withGhost(ROWS, CURVES, "slip_sinkage").map(({ name, rows }) => [name, rows[1].predicted]),
+    [
+      ["model", undefined],
+      ["slip_sinkage", 0.009],
+    ],
+  );
   assert.equal(withGhost(ROWS, CURVES, "none").length, 1);
 });
 
@@ -27,7 +43,12 @@ test("an explanation that changes no prediction by a tenth of its error sd is ab
 });
 
 test("the data cannot tell apart what is of one class and alike in evidence", () => {
-  const effects = [["a", 1, 40], ["b", 1, 38], ["c", 1, 30], ["d", 2, 40]].map(([name, kind, log_bayes_factor]) => ({ name, class: kind, log_bayes_factor }));
+  const effects = [
+    ["a", 1, 40],
+    ["b", 1, 38],
+    ["c", 1, 30],
+    ["d", 2, 40],
+  ].map(([name, kind, log_bayes_factor]) => ({ name, class: kind, log_bayes_factor }));
   assert.deepEqual(likeOf(effects, effects[0]), ["b"]);
   assert.deepEqual(likeOf(effects, effects[2]), []);
 });

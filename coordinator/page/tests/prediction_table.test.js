@@ -6,21 +6,45 @@ import { reasonWords } from "../modules/words/refusal.js";
 
 const run = (slip, load, speed) => ({ slip, wheel_load_n: load, sled_speed_m_s: speed });
 /** Answers of a service whose quantity is a function of the condition. */
-const answered = (plan, of) => plan.trim().split("\n").slice(1).map((line) => {
-  const [, slip, load, speed] = line.split(",").map(Number);
-  const mean = of(slip, load, speed);
-  return { quantities: [{ name: "q", models_mean: mean, models: [0, 0], models_measurement: [mean - 1, mean + 1] }] };
-});
+const answered = (plan, of) =>
+  plan
+    .trim()
+    .split("\n")
+    .slice(1)
+    .map((line) => {
+      const [, slip, load, speed] = line.split(",").map(Number);
+      const mean = of(slip, load, speed);
+      return {
+        quantities: [{ name: "q", models_mean: mean, models: [0, 0], models_measurement: [mean - 1, mean + 1] }],
+      };
+    });
 const SLIPS = [0, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7];
 const near = (a, b, within = 1e-9) => assert.ok(Math.abs(a - b) <= within, `${a} is not ${b}`);
 
 /** A grid as the service answers it, of a quantity that is a function of the condition. */
 const gridOf = (of) => {
-  const [slips, loads, speeds] = [[0, 0.1, 0.3, 0.7], [50, 90, 150], [0.01, 0.02, 0.04]];
-  const point = (slip, load, speed) => ({ refused: null, values: [[of(slip, load, speed), of(slip, load, speed) - 1, of(slip, load, speed) + 1], null] });
+  const [slips, loads, speeds] = [
+    [0, 0.1, 0.3, 0.7],
+    [50, 90, 150],
+    [0.01, 0.02, 0.04],
+  ];
+  const point = (slip, load, speed) => ({
+    refused: null,
+    values: [[of(slip, load, speed), of(slip, load, speed) - 1, of(slip, load, speed) + 1], null],
+  });
   const points = slips.flatMap((slip) => loads.flatMap((load) => speeds.map((speed) => point(slip, load, speed))));
-  const quantities = [{ name: "q", unit: "N", is_measurement: true }, { name: "none", unit: "N", is_measurement: false }];
-  return { slips, wheel_loads_n: loads, speeds_m_s: speeds, quantities, wheels: [{ wheel: "w", points }], reach: { slip: [0, 0.7], wheel_load_n: [50, 150], speed_m_s: [0.01, 0.04] } };
+  const quantities = [
+    { name: "q", unit: "N", is_measurement: true },
+    { name: "none", unit: "N", is_measurement: false },
+  ];
+  return {
+    slips,
+    wheel_loads_n: loads,
+    speeds_m_s: speeds,
+    quantities,
+    wheels: [{ wheel: "w", points }],
+    reach: { slip: [0, 0.7], wheel_load_n: [50, 150], speed_m_s: [0.01, 0.04] },
+  };
 };
 
 test("what lies beyond the fitted runs is named", () => {
@@ -87,8 +111,14 @@ test("an interval says whether it is that of new measurements, and a curve has o
   const place = { load: 90, speed: 0.02 };
   assert.ok(curve(fill(runs), "q", place).every(({ isMeasurement }) => isMeasurement));
   // One run whose noise is not known makes all intervals of the quantity those of the parameters.
-  const quantity = (run, more) => ({ quantities: [...run.quantities.map((q) => ({ ...q, ...more })), { ...run.quantities[0], name: "other" }] });
-  const points = curve(fill(runs.map((run, k) => quantity(run, k === 4 ? { models_measurement: null } : {}))), "q", place);
+  const quantity = (run, more) => ({
+    quantities: [...run.quantities.map((q) => ({ ...q, ...more })), { ...run.quantities[0], name: "other" }],
+  });
+  const points = curve(
+    fill(runs.map((run, k) => quantity(run, k === 4 ? { models_measurement: null } : {}))),
+    "q",
+    place,
+  );
   for (const point of points) assert.deepEqual([point.isMeasurement, point.low, point.high], [false, 0, 0]);
   assert.equal(atSlip(points, 0.3).isMeasurement, false);
   const other = curve(fill(runs.map((run) => quantity(run, { models_measurement: null }))), "other", place);
@@ -98,13 +128,20 @@ test("an interval says whether it is that of new measurements, and a curve has o
 
 test("slips that the model refuses are named with its reason, and a curve that has none left is known", () => {
   const { plan, fill } = curvePlan({ wheel: "w", slip: 0.7, load: 90, speed: 0.02 }, SLIPS, false);
-  const refusal = { draws: 40, of: 40, reason: "no_support: condition 3: the soil carries at most 80 N of the 90 N wheel load" };
+  const refusal = {
+    draws: 40,
+    of: 40,
+    reason: "no_support: condition 3: the soil carries at most 80 N of the 90 N wheel load",
+  };
   const runs = answered(plan, (slip) => slip);
   const table = fill(runs);
   assert.equal(refused(table), null);
   const some = fill(runs.map((run, k) => (k < 2 || k === 5 ? { quantities: [], refused: refusal } : run)));
   const { spans, isWhole, refusal: found } = refused(some);
-  assert.deepEqual(spans, [[some.slips[0], some.slips[1]], [some.slips[5], some.slips[5]]]);
+  assert.deepEqual(spans, [
+    [some.slips[0], some.slips[1]],
+    [some.slips[5], some.slips[5]],
+  ]);
   assert.ok(!isWhole && found === refusal);
   assert.equal(curve(some, "q", { load: 90, speed: 0.02 }).length, some.slips.length - 3);
   assert.equal(reasonWords(refusal.reason), "the soil carries at most 80 N of the 90 N wheel load");

@@ -14,7 +14,10 @@ test("the page evaluates a surface as the service does", () => {
     assert.ok(Math.abs(found.distance - distance) < 1e-12, `${found.distance}, not ${distance}`);
     surface.outputs.forEach((/** @type {any} */ output, /** @type {number} */ k) => {
       const value = /** @type {number} */ (found.outputs.get(key(output)));
-      assert.ok(Math.abs(value - outputs[k]) < 1e-11 * (1 + Math.abs(outputs[k])), `${key(output)}: ${value}, not ${outputs[k]}`);
+      assert.ok(
+        Math.abs(value - outputs[k]) < 1e-11 * (1 + Math.abs(outputs[k])),
+        `${key(output)}: ${value}, not ${outputs[k]}`,
+      );
     });
   }
 });
@@ -38,8 +41,18 @@ test("the ranges of an output hold its value at the mean", () => {
 test("parameters that follow take the place that the draws have on average", () => {
   const parameter = { logarithmic: false, centre: 0, mean: 0, lower: -10, upper: 10, unit: "1" };
   // The covariance is [[4, 2], [2, 2]]: the second parameter changes by half as much as the first.
-  const pair = { degree: "linear", radius: 3, factor: [[2], [1, 1]], outputs: [], parameters: [{ ...parameter, name: "a" }, { ...parameter, name: "b", upper: 1 }] };
-  const moved = (/** @type {number} */ index, /** @type {number} */ value, /** @type {boolean} */ follows) => changed(/** @type {any} */ (pair), [0, 0], index, value, follows);
+  const pair = {
+    degree: "linear",
+    radius: 3,
+    factor: [[2], [1, 1]],
+    outputs: [],
+    parameters: [
+      { ...parameter, name: "a" },
+      { ...parameter, name: "b", upper: 1 },
+    ],
+  };
+  const moved = (/** @type {number} */ index, /** @type {number} */ value, /** @type {boolean} */ follows) =>
+    changed(/** @type {any} */ (pair), [0, 0], index, value, follows);
   assert.deepEqual(moved(0, 1, false), [1, 0]);
   assert.deepEqual(moved(0, 1, true), [1, 0.5]);
   assert.deepEqual(moved(1, 0.5, true), [0.5, 0.5]);
@@ -47,7 +60,20 @@ test("parameters that follow take the place that the draws have on average", () 
 });
 
 test("measurements without an output do not count in the error", () => {
-  const rows = [{ run: "a", channel: "torque", use: "fit", measured: 5 }, { run: "b", channel: "torque", use: "fit", measured: 1 }, { run: "c", channel: "torque", use: "fit", measured: 9 }];
-  assert.equal(rmse(rows, new Map([["torque a", 2], ["torque b", 5]])), Math.sqrt(12.5));
+  const rows = [
+    { run: "a", channel: "torque", use: "fit", measured: 5 },
+    { run: "b", channel: "torque", use: "fit", measured: 1 },
+    { run: "c", channel: "torque", use: "fit", measured: 9 },
+  ];
+  assert.equal(
+    rmse(
+      rows,
+      new Map([
+        ["torque a", 2],
+        ["torque b", 5],
+      ]),
+    ),
+    Math.sqrt(12.5),
+  );
   assert.equal(rmse(rows, new Map()), null);
 });

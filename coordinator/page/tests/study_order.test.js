@@ -4,10 +4,21 @@ import { test } from "node:test";
 import { listed, ORDERS } from "../modules/words/study_order.js";
 
 const study = (/** @type {number} */ id, /** @type {string} */ name, /** @type {number | null} */ sds, found = "") => ({
-  id, name, details: { author: id === 2 ? "Zoë" : null, tags: id === 3 ? ["Rinne B"] : [] }, state: "finished", model_kind: "quasi_static", effects: [], models: null, verdict: found ? { short: found } : null,
+  id,
+  name,
+  details: { author: id === 2 ? "Zoë" : null, tags: id === 3 ? ["Rinne B"] : [] },
+  state: "finished",
+  model_kind: "quasi_static",
+  effects: [],
+  models: null,
+  verdict: found ? { short: found } : null,
   error: sds === null ? null : { fit: { all: { rmse_fixed_sigma: 9 } }, holdout: { all: { rmse_fixed_sigma: sds } } },
 });
-const STUDIES = [study(1, "sand", 2.5, "slip_sinkage is missing (P 0.97)"), study(2, "clay", null), study(3, "Sand, wet", 0.9)];
+const STUDIES = [
+  study(1, "sand", 2.5, "slip_sinkage is missing (P 0.97)"),
+  study(2, "clay", null),
+  study(3, "Sand, wet", 0.9),
+];
 const ids = (text = "", order = "newest first") => listed(STUDIES, text, order).map(({ id }) => id);
 
 test("a study is found by every word of its name, state, model and verdict", () => {

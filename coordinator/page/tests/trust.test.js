@@ -4,9 +4,18 @@ import { test } from "node:test";
 import { judgements } from "../modules/words/trust.js";
 
 const channel = (/** @type {string} */ name, p = 0.5) => ({ channel: name, chi_square: { p } });
-const parameter = (/** @type {string} */ name, change = {}) => ({ name, contraction: 0.9, conflict_p: 0.5, at_bound: false, ...change });
-const wrong = (change = {}) => ({ channels: [{ channel: "drawbar_pull", use: "holdout", is_judged: true, is_within_noise: true, ...change }] });
-const levels = (/** @type {any} */ line, /** @type {any} */ diagnostics, /** @type {any} */ of) => judgements(line, diagnostics, of).map(({ level }) => level);
+const parameter = (/** @type {string} */ name, change = {}) => ({
+  name,
+  contraction: 0.9,
+  conflict_p: 0.5,
+  at_bound: false,
+  ...change,
+});
+const wrong = (change = {}) => ({
+  channels: [{ channel: "drawbar_pull", use: "holdout", is_judged: true, is_within_noise: true, ...change }],
+});
+const levels = (/** @type {any} */ line, /** @type {any} */ diagnostics, /** @type {any} */ of) =>
+  judgements(line, diagnostics, of).map(({ level }) => level);
 const GOOD = { channels: [channel("sinkage")], parameters: [parameter("n")] };
 
 test("a calibration without faults is good by every question", () => {
@@ -16,8 +25,26 @@ test("a calibration without faults is good by every question", () => {
 });
 
 test("each fault lowers its own question, and names what it is about", () => {
-  const texts = judgements({ equilibrated: false }, { channels: [channel("sinkage", 1e-5)], parameters: [parameter("n", { conflict_p: 0.001 }), parameter("kappa", { contraction: 0.02 })] }, wrong({ is_within_noise: false }));
-  assert.deepEqual(texts.map(({ level }) => level), ["poor", "poor", "poor", "fair", "poor"]);
-  for (const [k, name] of ["", "sinkage", "n", "kappa", "drawbar pull"].entries()) assert.ok(texts[k].text.includes(name), texts[k].text);
-  assert.deepEqual(levels({ equilibrated: true }, { ...GOOD, parameters: [parameter("n", { at_bound: true })] }, wrong({ use: "fit" })), ["good", "good", "fair", "good", "fair"]);
+  const texts = judgements(
+    { equilibrated: false },
+    {
+      channels: [channel("sinkage", 1e-5)],
+      parameters: [parameter("n", { conflict_p: 0.001 }), parameter("kappa", { contraction: 0.02 })],
+    },
+    wrong({ is_within_noise: false }),
+  );
+  assert.deepEqual(
+    texts.map(({ level }) => level),
+    ["poor", "poor", "poor", "fair", "poor"],
+  );
+  for (const [k, name] of ["", "sinkage", "n", "kappa", "drawbar pull"].entries())
+    assert.ok(texts[k].text.includes(name), texts[k].text);
+  assert.deepEqual(
+    levels(
+      { equilibrated: true },
+      { ...GOOD, parameters: [parameter("n", { at_bound: true })] },
+      wrong({ use: "fit" }),
+    ),
+    ["good", "good", "fair", "good", "fair"],
+  );
 });

@@ -9,8 +9,26 @@ import { benchTest } from "../modules/words/bench_test.js";
 import { clauses } from "../modules/words/clauses.js";
 import { levels, levelWords } from "../modules/words/level.js";
 import { measuredQuantities, statementOf } from "../modules/words/predicted_quantity.js";
-import { meanAndSpread, parameterTitle, parameterValue, parameterValues, shownParameter } from "../modules/words/parameter.js";
-import { digits, duration, meanAndSd, numberOf, parameterName, probability, raised, shown, size, tickWords, withSd } from "../modules/words/quantity.js";
+import {
+  meanAndSpread,
+  parameterTitle,
+  parameterValue,
+  parameterValues,
+  shownParameter,
+} from "../modules/words/parameter.js";
+import {
+  digits,
+  duration,
+  meanAndSd,
+  numberOf,
+  parameterName,
+  probability,
+  raised,
+  shown,
+  size,
+  tickWords,
+  withSd,
+} from "../modules/words/quantity.js";
 import { hasErrorsBesideNoise, meanErrorSd, residualSds } from "../modules/words/residual.js";
 import { progressWords } from "../modules/words/state.js";
 
@@ -25,7 +43,15 @@ test("a number has its significant digits, and an exponent only where it needs o
 });
 
 test("a tick is short, with an exponent where its number is large or small", () => {
-  assert.deepEqual([0, 0.1 + 0.2, -0.95, 1500, 15e6, 9e7, -2e-5].map(tickWords), ["0", "0.3", "−0.95", "1500", "1.5·10⁷", "9·10⁷", "−2·10⁻⁵"]);
+  assert.deepEqual([0, 0.1 + 0.2, -0.95, 1500, 15e6, 9e7, -2e-5].map(tickWords), [
+    "0",
+    "0.3",
+    "−0.95",
+    "1500",
+    "1.5·10⁷",
+    "9·10⁷",
+    "−2·10⁻⁵",
+  ]);
 });
 
 test("lengths are shown in millimetres", () => {
@@ -55,12 +81,20 @@ function* shares(seed = 1) {
   for (let state = seed; ; yield state / 2 ** 31) state = (1103515245 * state + 12345) % 2 ** 31;
 }
 const named = (/** @type {number[]} */ values) => levels(values).map((level) => levelWords(level, "N"));
-const repeated = (/** @type {number[]} */ values, /** @type {number} */ count) => values.flatMap((value) => Array(count).fill(value));
+const repeated = (/** @type {number[]} */ values, /** @type {number} */ count) =>
+  values.flatMap((value) => Array(count).fill(value));
 
 test("settings that are repeated are a level each, however near they lie", () => {
   assert.deepEqual(named(repeated([100, 110, 120], 6)), ["100 N", "110 N", "120 N"]);
   assert.deepEqual(named(repeated([100, 103, 106], 2)), ["100 N", "103 N", "106 N"]);
-  assert.deepEqual(named([...repeated([100, 110, 120, 200, 210], 4), 105]), ["100 N", "105 N", "110 N", "120 N", "200 N", "210 N"]);
+  assert.deepEqual(named([...repeated([100, 110, 120, 200, 210], 4), 105]), [
+    "100 N",
+    "105 N",
+    "110 N",
+    "120 N",
+    "200 N",
+    "210 N",
+  ]);
   // Computed from slip and speed, typed with four digits.
   assert.equal(levels([0.02, 0.020002, 0.019997, 0.022, 0.021998, 0.022]).length, 2);
 });
@@ -69,8 +103,13 @@ test("readings that scatter by 3 % about five loads are one level for each", () 
   const random = shares();
   const load = (/** @type {number} */ nominal) => nominal * (0.97 + 0.06 * /** @type {number} */ (random.next().value));
   for (const runs of [6, 12, 30]) {
-    const found = levels([60, 80, 100, 120, 140].flatMap((nominal) => Array.from({ length: runs }, () => load(nominal))));
-    assert.deepEqual(found.map(({ low }) => Math.round(low / 20) * 20), [60, 80, 100, 120, 140]);
+    const found = levels(
+      [60, 80, 100, 120, 140].flatMap((nominal) => Array.from({ length: runs }, () => load(nominal))),
+    );
+    assert.deepEqual(
+      found.map(({ low }) => Math.round(low / 20) * 20),
+      [60, 80, 100, 120, 140],
+    );
     assert.ok(found.every(({ count }) => count === runs));
   }
 });
@@ -81,7 +120,13 @@ test("readings about one load, and a range without gaps, are one level", () => {
 });
 
 test("values that lie far apart are levels without a repeat", () => {
-  assert.deepEqual(levels([60, 62, 120, 119]).map(({ low, high }) => [low, high]), [[60, 62], [119, 120]]);
+  assert.deepEqual(
+    levels([60, 62, 120, 119]).map(({ low, high }) => [low, high]),
+    [
+      [60, 62],
+      [119, 120],
+    ],
+  );
   assert.deepEqual(named([60, 80, 120]), ["60 N", "80 N", "120 N"]);
   assert.deepEqual(levels([]), []);
 });
@@ -94,35 +139,69 @@ test("the ends of a level have the digits that tell them apart", () => {
 });
 
 test("runs are grouped by the speed that the rig holds", () => {
-  const run = (slip, wheel_load_n, sled_speed_m_s) => ({ run: `${slip} ${wheel_load_n}`, wheel: "w", slip, wheel_load_n, sled_speed_m_s, slip_angle_deg: 0 });
+  const run = (slip, wheel_load_n, sled_speed_m_s) => ({
+    run: `${slip} ${wheel_load_n}`,
+    wheel: "w",
+    slip,
+    wheel_load_n,
+    sled_speed_m_s,
+    slip_angle_deg: 0,
+  });
   const sled = groups([run(0, 60, 0.01), run(0.5, 60, 0.01), run(0.5, 120, 0.01)]);
-  assert.deepEqual(sled.groups.map((g) => g.rows.length), [2, 1]);
+  assert.deepEqual(
+    sled.groups.map((g) => g.rows.length),
+    [2, 1],
+  );
   assert.deepEqual(sled.colours, ["60 N", "120 N"]);
   const rim = groups([run(0, 60, 0.02), run(0.5, 60, 0.01), run(0.75, 60, 0.005), run(0, 60, 0.08)]);
-  assert.deepEqual(rim.groups.map((g) => g.rows.length), [3, 1]);
+  assert.deepEqual(
+    rim.groups.map((g) => g.rows.length),
+    [3, 1],
+  );
   assert.deepEqual(rim.colours, ["rim 20 mm/s", "rim 80 mm/s"]);
 });
 
 test("where the wheel load has one level, colours tell the condition that has most", () => {
   const run = (/** @type {number} */ wheel_load_n, /** @type {number} */ slip_angle_deg) => ({
-    run: "", wheel: "w", slip: 0.1, wheel_load_n, sled_speed_m_s: 0.01, slip_angle_deg });
+    run: "",
+    wheel: "w",
+    slip: 0.1,
+    wheel_load_n,
+    sled_speed_m_s: 0.01,
+    slip_angle_deg,
+  });
   const one = groups([0, 15, 45].flatMap((angle) => [run(60, angle), run(60, angle)]));
-  assert.deepEqual([one.colours, one.symbols, one.colourKey, one.single], [["0°", "15°", "45°"], [""], "slip_angle_deg", "60 N"]);
-  assert.deepEqual(one.groups.map((g) => g.colour), [0, 1, 2]);
+  assert.deepEqual(
+    [one.colours, one.symbols, one.colourKey, one.single],
+    [["0°", "15°", "45°"], [""], "slip_angle_deg", "60 N"],
+  );
+  assert.deepEqual(
+    one.groups.map((g) => g.colour),
+    [0, 1, 2],
+  );
   const two = groups([0, 15, 45].flatMap((angle) => [run(60, angle), run(120, angle)]));
   assert.deepEqual([two.colours, two.colourKey, two.single], [["60 N", "120 N"], "wheel_load_n", null]);
 });
 
 test("numbers and units of the service are written as people write them", () => {
-  assert.equal(raised("1500 kg/m^3 (p = 7e-7 among 9, p < 1e-12): by -0.5 and -2"), "1500 kg/m³ (p = 7·10⁻⁷ among 9, p < 10⁻¹²): by −0.5 and −2");
+  assert.equal(
+    raised("1500 kg/m^3 (p = 7e-7 among 9, p < 1e-12): by -0.5 and -2"),
+    "1500 kg/m³ (p = 7·10⁻⁷ among 9, p < 10⁻¹²): by −0.5 and −2",
+  );
   assert.equal(raised("sinkage_m = 0.062220742972120435 m and 0.0622"), "sinkage_m = 0.06222 m and 0.0622");
-  assert.equal(raised("1.2e-7 m, 0.000000120012345 m, 123456.123456789 Pa, 0.0001234567891"), "1.2·10⁻⁷ m, 1.2·10⁻⁷ m, 123456 Pa, 0.0001235");
+  assert.equal(
+    raised("1.2e-7 m, 0.000000120012345 m, 123456.123456789 Pa, 0.0001234567891"),
+    "1.2·10⁻⁷ m, 1.2·10⁻⁷ m, 123456 Pa, 0.0001235",
+  );
   // Names and dates stay as they are.
   assert.equal(raised("next-41 of 2026-11-27, one-2e4b"), "next-41 of 2026-11-27, one-2e4b");
 });
 
 test("a sentence is taken apart at its semicolons, but not within brackets", () => {
-  assert.deepEqual(clauses("a was missing (P > 0.999; robust) and is added; beyond that, nothing"), ["a was missing (P > 0.999; robust) and is added", "beyond that, nothing"]);
+  assert.deepEqual(clauses("a was missing (P > 0.999; robust) and is added; beyond that, nothing"), [
+    "a was missing (P > 0.999; robust) and is added",
+    "beyond that, nothing",
+  ]);
   assert.deepEqual(clauses("one of a, b"), ["one of a, b"]);
 });
 
@@ -133,7 +212,10 @@ test("a flag does not repeat the name of the model whose flags are listed", () =
 
 test("the weightiest flags stand first", () => {
   const flags = ["no_information", "chi2", "trend", "not_equilibrated", "of a later version"].map((kind) => ({ kind }));
-  assert.deepEqual(byWeight(flags).map(({ kind }) => kind), ["not_equilibrated", "chi2", "trend", "no_information", "of a later version"]);
+  assert.deepEqual(
+    byWeight(flags).map(({ kind }) => kind),
+    ["not_equilibrated", "chi2", "trend", "no_information", "of a later version"],
+  );
 });
 
 test("a run names three of the explanations that it separates", () => {
@@ -142,25 +224,48 @@ test("a run names three of the explanations that it separates", () => {
 });
 
 test("a test without a rolling wheel is told apart from the line that states its result", () => {
-  assert.deepEqual(benchTest("tare run: move the sled. Its result goes under [priors]: \"a.b\" = { normal = [VALUE, SD] }"),
-    { what: "tare run: move the sled.", place: "[priors]: \"a.b\" = { normal = [VALUE, SD] }" });
+  assert.deepEqual(
+    benchTest('tare run: move the sled. Its result goes under [priors]: "a.b" = { normal = [VALUE, SD] }'),
+    { what: "tare run: move the sled.", place: '[priors]: "a.b" = { normal = [VALUE, SD] }' },
+  );
   assert.deepEqual(benchTest("plate test"), { what: "plate test.", place: null });
 });
 
 test("against the load, runs of one slip and speed are a line, and the colour tells the slip", () => {
   const run = (/** @type {number} */ slip, /** @type {number} */ wheel_load_n, /** @type {number} */ rim) => ({
-    run: "", wheel: "w", slip, wheel_load_n, sled_speed_m_s: rim * (1 - slip), slip_angle_deg: 0 });
+    run: "",
+    wheel: "w",
+    slip,
+    wheel_load_n,
+    sled_speed_m_s: rim * (1 - slip),
+    slip_angle_deg: 0,
+  });
   const runs = [0.1, 0.4, -0.2].flatMap((slip) => [60, 90, 120].map((load) => run(slip, load, 0.02)));
   const byLoad = groups(runs, "wheel_load_n");
-  assert.deepEqual(byLoad.groups.map((g) => g.rows.length), [3, 3, 3]);
+  assert.deepEqual(
+    byLoad.groups.map((g) => g.rows.length),
+    [3, 3, 3],
+  );
   assert.deepEqual(byLoad.colours, ["slip −0.2", "slip 0.1", "slip 0.4"]);
-  const bySpeed = groups([0.01, 0.02, 0.04].map((rim) => run(0.1, 60, rim)), "sled_speed_m_s");
-  assert.deepEqual(bySpeed.groups.map((g) => g.rows.length), [3]);
+  const bySpeed = groups(
+    [0.01, 0.02, 0.04].map((rim) => run(0.1, 60, rim)),
+    "sled_speed_m_s",
+  );
+  assert.deepEqual(
+    bySpeed.groups.map((g) => g.rows.length),
+    [3],
+  );
   assert.deepEqual(bySpeed.symbols, [""]);
 });
 
 test("a table as CSV quotes what needs it", () => {
-  assert.equal(table([{ run: 'a "1", b', rmse: 1.5 }, { run: "c", unit: null }]), 'run,rmse,unit\n"a ""1"", b",1.5,\nc,,\n');
+  assert.equal(
+    table([
+      { run: 'a "1", b', rmse: 1.5 },
+      { run: "c", unit: null },
+    ]),
+    'run,rmse,unit\n"a ""1"", b",1.5,\nc,,\n',
+  );
 });
 
 test("a parameter is shown in the unit that the service states, which its name need not repeat", () => {
@@ -201,7 +306,12 @@ test("residuals count in the noise alone where the reader asks for it, and nobod
   assert.ok(Math.abs(/** @type {number} */ (residualSds(row, "noise")) + 4) < 1e-12);
   assert.equal(meanErrorSd([row, { noise_sd: 0.3, error_sd: 6 }], "noise"), 0.2);
   assert.ok(hasErrorsBesideNoise([row]));
-  assert.ok(!hasErrorsBesideNoise([{ noise_sd: 0.1, error_sd: 0.1 }, { noise_sd: null, error_sd: null }]));
+  assert.ok(
+    !hasErrorsBesideNoise([
+      { noise_sd: 0.1, error_sd: 0.1 },
+      { noise_sd: null, error_sd: null },
+    ]),
+  );
 });
 
 test("a typed number has a point or a comma", () => {
@@ -213,8 +323,14 @@ test("a typed number has a point or a comma", () => {
 
 test("progress says where each kind of algorithm is", () => {
   const told = (/** @type {any} */ position) => progressWords({ position, evaluations: 2300, remaining_s: null });
-  assert.equal(told({ kind: "sampler", stage: 5, tempering_exponent: 0.012, step: 1, acceptance: 0.3 }), "stage 5, exponent 0.012, 2300 evaluations");
-  assert.equal(told({ kind: "sampler", stage: 0, tempering_exponent: 0, step: 0, acceptance: null }), "stage 0, 2300 evaluations");
+  assert.equal(
+    told({ kind: "sampler", stage: 5, tempering_exponent: 0.012, step: 1, acceptance: 0.3 }),
+    "stage 5, exponent 0.012, 2300 evaluations",
+  );
+  assert.equal(
+    told({ kind: "sampler", stage: 0, tempering_exponent: 0, step: 0, acceptance: null }),
+    "stage 0, 2300 evaluations",
+  );
   assert.equal(told({ kind: "fit", steps: 4 }), "step 4, 2300 evaluations");
   assert.equal(told({ kind: "evolution", generations: 7 }), "generation 7, 2300 evaluations");
   assert.equal(told({ kind: "search", rounds: 2 }), "round 2, 2300 evaluations");
@@ -227,9 +343,17 @@ test("the ends of an interval have the digits of their sd", () => {
 });
 
 test("a statement is about a quantity that was measured, in SI", () => {
-  const all = [["drawbar_pull_n", "N"], ["torque_n_m", "N m"], ["sinkage_m", "m"], ["power_number", "1"]].map(([name, unit]) => ({ name, unit }));
+  const all = [
+    ["drawbar_pull_n", "N"],
+    ["torque_n_m", "N m"],
+    ["sinkage_m", "m"],
+    ["power_number", "1"],
+  ].map(([name, unit]) => ({ name, unit }));
   const quantities = measuredQuantities(all, [{ channel: "torque" }, { channel: "sinkage" }]);
-  assert.deepEqual(quantities.map(({ name }) => name), ["torque_n_m", "sinkage_m", "power_number"]);
+  assert.deepEqual(
+    quantities.map(({ name }) => name),
+    ["torque_n_m", "sinkage_m", "power_number"],
+  );
   assert.equal(statementOf(quantities[0], ">", 3), "torque_n_m > 3");
   const metres = 12 / shown("m").scale;
   assert.equal(statementOf(quantities[1], "<", 12), `sinkage_m < ${metres}`);

@@ -27,17 +27,41 @@ const MOST_NAMES = 10;
  * @typedef {{ name: string, colour: string | null, rows: any[], isGhost?: boolean }} Layer
  *   colour: of all its lines; null: each group of runs has its own.
  * @typedef {import("./surface_curves.js").SurfaceCurves} Moving
- * @param {{ channel: string, wheel: string | null, measurements: any[], layers: Layer[], axis: import("./condition.js").ConditionAxis, name: string, moving?: Moving, title?: string, isLow?: boolean }} properties
- *   layers: models, each with the rows of its comparison. measurements: each of them once. isLow: whether the picture has the smallest readable height.
+ * @param {{ channel: string, wheel: string | null, measurements: any[], layers: Layer[], axis:
+ *   import("./condition.js").ConditionAxis, name: string, moving?: Moving, title?: string, isLow?: boolean }}
+ *   properties layers: models, each with the rows of its comparison. measurements: each of them once. isLow: whether
+ *   the picture has the smallest readable height.
  */
-export function ChannelChart({ channel, wheel, measurements, layers, axis, name, moving, title: stated, isLow = false }) {
-  const own = (/** @type {any[]} */ rows) => rows.filter((r) => r.channel === channel && (wheel === null || r.wheel === wheel));
+export function ChannelChart({
+  channel,
+  wheel,
+  measurements,
+  layers,
+  axis,
+  name,
+  moving,
+  title: stated,
+  isLow = false,
+}) {
+  const own = (/** @type {any[]} */ rows) =>
+    rows.filter((r) => r.channel === channel && (wheel === null || r.wheel === wheel));
   const measured = own(measurements);
   const quantity = shown(measured[0].unit);
   const found = useMemo(() => groups(measured, axis.key), [measurements, channel, wheel, axis.key]);
   const what = [channelName(channel), wheel === null ? "" : t`wheel ${wheel}`].filter(Boolean).join(", ");
   const title = stated ?? (isLow ? what : t`${what}, measured and computed, by ${axis.title}`);
-  const draw = (/** @type {number} */ width) => picture({ width, layers: layers.map((l) => ({ ...l, rows: own(l.rows) })), measured, found, axis, quantity, channel, moving, isLow });
+  const draw = (/** @type {number} */ width) =>
+    picture({
+      width,
+      layers: layers.map((l) => ({ ...l, rows: own(l.rows) })),
+      measured,
+      found,
+      axis,
+      quantity,
+      channel,
+      moving,
+      isLow,
+    });
   const drawn = (/** @type {any} */ plot) => {
     const release = pointable(plot, { runsIn, words: (from, to) => spanWords(axis, from, to) });
     const curves = found.groups.map((group) => ({ rows: group.rows, stroke: colour(group.colour) }));
@@ -52,79 +76,196 @@ export function ChannelChart({ channel, wheel, measurements, layers, axis, name,
   const used = [...new Set(found.groups.map((g) => g.symbol))].sort((a, b) => a - b);
   // Where the colours are the models', the signs of the measurements tell what colours tell otherwise.
   const isLayered = layers.some((l) => l.colour !== null && !l.isGhost);
-  const colours = found.colours.slice(0, MOST_NAMES).map((name, k) => html`<${Entry} glyph=${isLayered
-    ? html`<g fill="currentColor">${glyph(k)}</g>`
-    : html`<rect x="1" y="5" width="14" height="6" fill=${colour(k)} />`}>${name}<//>`);
-  const symbols = found.symbols.length < 2 || isLayered ? [] : used.slice(0, MOST_NAMES).map((k) => html`<${Entry} glyph=${html`<g fill="currentColor">${glyph(k)}</g>`}>${found.symbols[k]}<//>`);
+  const colours = found.colours.slice(0, MOST_NAMES).map(
+    (name, k) =>
+      html`
+          <${Entry}
+            glyph=${
+              isLayered
+                ? html`<g fill="currentColor">${glyph(k)}</g>`
+                : html`<rect x="1" y="5" width="14" height="6" fill=${colour(k)} />`
+            }
+          >
+            ${name}
+          <//>
+        `,
+  );
+  const symbols =
+    found.symbols.length < 2 || isLayered
+      ? []
+      : used
+          .slice(0, MOST_NAMES)
+          .map((k) => html`<${Entry} glyph=${html`<g fill="currentColor">${glyph(k)}</g>`}>${found.symbols[k]}<//>`);
   const hasHoldout = measured.some((r) => r.use === "holdout");
-  return html`<${Figure} title=${title} name=${fileName(name, channel, wheel ?? "")}
-    deps=${[layers.map((l) => `${l.name} ${l.rows.length}`).join(), layers.at(-1)?.rows, measurements, axis.key]}
-    draw=${draw} rows=${() => table(layers, own)}
-    onDrawn=${drawn}
-    legend=${html`${found.single && html`<span>${found.single}</span>`}${colours}${symbols}
-      ${hasHoldout && html`<${Entry} glyph=${html`<circle cx="8" cy="8" r="4" fill="none" stroke="currentColor" stroke-width="2" />`}>held out<//>`}
-      ${layers.filter((l) => l.colour !== null).map((l) => html`<${Entry} glyph=${html`<path d="M0 8h16" stroke=${l.colour} stroke-width="2" stroke-dasharray=${l.isGhost ? "3 3" : ""} />`}>${l.name}<//>`)}`} />`;
+  return html`
+    <${Figure}
+      title=${title}
+      name=${fileName(name, channel, wheel ?? "")}
+      deps=${[layers.map((l) => `${l.name} ${l.rows.length}`).join(), layers.at(-1)?.rows, measurements, axis.key]}
+      draw=${draw}
+      rows=${() => table(layers, own)}
+      onDrawn=${drawn}
+      legend=${html`
+        ${found.single && html`<span>${found.single}</span>`}
+        ${colours}
+        ${symbols}
+        ${
+          hasHoldout &&
+          html`
+            <${Entry} glyph=${html`<circle cx="8" cy="8" r="4" fill="none" stroke="currentColor" stroke-width="2" />`}>
+              held out
+            <//>
+          `
+        }
+        ${layers
+          .filter((l) => l.colour !== null)
+          .map(
+            (l) =>
+              html`
+                <${Entry}
+                  glyph=${html`
+                    <path d="M0 8h16" stroke=${l.colour} stroke-width="2" stroke-dasharray=${l.isGhost ? "3 3" : ""} />
+                  `}
+                >
+                  ${l.name}
+                <//>
+              `,
+          )}
+      `}
+    />
+  `;
 }
 
 /** Measured and computed values as rows of a file. */
 function table(/** @type {Layer[]} */ layers, /** @type {(rows: any[]) => any[]} */ own) {
-  return layers.flatMap((layer) => own(layer.rows).map((r) => ({
-    model: layer.name, run: r.run, use: r.use, wheel: r.wheel, slip: r.slip, wheel_load_n: r.wheel_load_n, sled_speed_m_s: r.sled_speed_m_s,
-    slip_angle_deg: r.slip_angle_deg, channel: r.channel, unit: r.unit, measured: r.measured, predicted: r.predicted, q05: r.q05, q95: r.q95,
-  })));
+  return layers.flatMap((layer) =>
+    own(layer.rows).map((r) => ({
+      model: layer.name,
+      run: r.run,
+      use: r.use,
+      wheel: r.wheel,
+      slip: r.slip,
+      wheel_load_n: r.wheel_load_n,
+      sled_speed_m_s: r.sled_speed_m_s,
+      slip_angle_deg: r.slip_angle_deg,
+      channel: r.channel,
+      unit: r.unit,
+      measured: r.measured,
+      predicted: r.predicted,
+      q05: r.q05,
+      q95: r.q95,
+    })),
+  );
 }
 
-/** @param {{ width: number, layers: Layer[], measured: any[], found: ReturnType<typeof groups>, axis: any, quantity: any, channel: string, moving?: Moving, isLow: boolean }} properties */
+/**
+ * @param {{ width: number, layers: Layer[], measured: any[], found: ReturnType<typeof groups>, axis: any, quantity:
+ *   any, channel: string, moving?: Moving, isLow: boolean }} properties
+ */
 function picture({ width, layers, measured, found, axis, quantity, channel, moving, isLow }) {
   const x = (/** @type {any} */ r) => r[axis.key] * axis.scale;
-  const value = (/** @type {string} */ key) => (/** @type {any} */ r) => (r[key] === null || r[key] === undefined ? NaN : r[key] * quantity.scale);
+  const value = (/** @type {string} */ key) => (/** @type {any} */ r) =>
+    r[key] === null || r[key] === undefined ? NaN : r[key] * quantity.scale;
   const place = new Map(found.groups.flatMap((group) => group.rows.map((r) => [r.run, group])));
   const isMany = measured.length > MANY;
   const hasBands = layers.length === 1 || layers.length * found.groups.length <= MOST_BANDS;
-  const marks = layers.flatMap((layer) => layerMarks({ ...layer, hasBands: hasBands && !layer.isGhost }, place, x, value, isMany));
+  const marks = layers.flatMap((layer) =>
+    layerMarks({ ...layer, hasBands: hasBands && !layer.isGhost }, place, x, value, isMany),
+  );
   const isLayered = layers.some((l) => l.colour !== null && !l.isGhost);
-  const dots = (/** @type {any[]} */ rows, /** @type {any} */ look) => found.groups.map((group) => {
-    const own = rows.filter((r) => place.get(r.run) === group);
-    const sign = isLayered ? { symbol: symbol(group.colour), ...look("var(--measured)") } : { symbol: symbol(group.symbol), ...look(colour(group.colour)) };
-    return Plot.dot(own, byRun(own, { x, y: value("measured"), r: 4.2, ...sign }, isMany));
-  });
+  const dots = (/** @type {any[]} */ rows, /** @type {any} */ look) =>
+    found.groups.map((group) => {
+      const own = rows.filter((r) => place.get(r.run) === group);
+      const sign = isLayered
+        ? { symbol: symbol(group.colour), ...look("var(--measured)") }
+        : { symbol: symbol(group.symbol), ...look(colour(group.colour)) };
+      return Plot.dot(own, byRun(own, { x, y: value("measured"), r: 4.2, ...sign }, isMany));
+    });
   // No edges where many signs are one path: they would cover neighbouring signs.
   const edge = isMany ? {} : { stroke: "var(--paper)", strokeWidth: 0.7 };
-  const predictions = layers.map((layer) => ({ name: layer.name, ofRun: new Map(layer.rows.map((r) => [r.run, r.predicted])) }));
-  const tip = (/** @type {any} */ r) => [
-    runName(r),
-    conditionWords(r),
-    `${t`measured`} ${digits(r.measured * quantity.scale)} ${quantity.unit}`,
-    ...predictions.map(({ name, ofRun }) => {
-      const predicted = ofRun.get(r.run);
-      return predicted === undefined || predicted === null ? "" : `${name} ${digits(predicted * quantity.scale)} ${quantity.unit}`;
-    }),
-  ].filter(Boolean).join("\n");
+  const predictions = layers.map((layer) => ({
+    name: layer.name,
+    ofRun: new Map(layer.rows.map((r) => [r.run, r.predicted])),
+  }));
+  const tip = (/** @type {any} */ r) =>
+    [
+      runName(r),
+      conditionWords(r),
+      `${t`measured`} ${digits(r.measured * quantity.scale)} ${quantity.unit}`,
+      ...predictions.map(({ name, ofRun }) => {
+        const predicted = ofRun.get(r.run);
+        return predicted === undefined || predicted === null
+          ? ""
+          : `${name} ${digits(predicted * quantity.scale)} ${quantity.unit}`;
+      }),
+    ]
+      .filter(Boolean)
+      .join("\n");
   return Plot.plot({
-    width, height: isLow ? LOW : Math.max(240, Math.min(360, 0.62 * width)), marginTop: 26, marginLeft: 56, marginBottom: 40, inset: 7, grid: true, style: STYLE,
+    width,
+    height: isLow ? LOW : Math.max(240, Math.min(360, 0.62 * width)),
+    marginTop: 26,
+    marginLeft: 56,
+    marginBottom: 40,
+    inset: 7,
+    grid: true,
+    style: STYLE,
     x: { label: titled(axis.title, axis.unit), labelArrow: "none", labelAnchor: "center", nice: true },
-    y: { label: titled(channelName(channel), quantity.unit), labelArrow: "none", nice: true, ...(moving ? { domain: reach(layers, measured, quantity, moving) } : {}) },
+    y: {
+      label: titled(channelName(channel), quantity.unit),
+      labelArrow: "none",
+      nice: true,
+      ...(moving ? { domain: reach(layers, measured, quantity, moving) } : {}),
+    },
     marks: [
       ...marks,
-      ...dots(measured.filter((r) => r.use !== "holdout"), (/** @type {string} */ c) => ({ fill: c, ...edge })),
-      ...dots(measured.filter((r) => r.use === "holdout"), (/** @type {string} */ c) => ({ fill: "var(--paper)", stroke: c, strokeWidth: 1.8 })),
+      ...dots(
+        measured.filter((r) => r.use !== "holdout"),
+        (/** @type {string} */ c) => ({ fill: c, ...edge }),
+      ),
+      ...dots(
+        measured.filter((r) => r.use === "holdout"),
+        (/** @type {string} */ c) => ({ fill: "var(--paper)", stroke: c, strokeWidth: 1.8 }),
+      ),
       // The words are made of the run that is pointed at alone.
-      Plot.tip(measured, Plot.pointer({
-        x, y: value("measured"), title: (/** @type {any} */ r) => r, format: { title: tip }, maxRadius: 14, fill: "var(--panel)", stroke: "var(--rule)",
-      })),
+      Plot.tip(
+        measured,
+        Plot.pointer({
+          x,
+          y: value("measured"),
+          title: (/** @type {any} */ r) => r,
+          format: { title: tip },
+          maxRadius: 14,
+          fill: "var(--panel)",
+          stroke: "var(--rule)",
+        }),
+      ),
     ],
   });
 }
 
 /** The least and the greatest value of a picture whose curves move. */
-function reach(/** @type {Layer[]} */ layers, /** @type {any[]} */ measured, /** @type {any} */ quantity, /** @type {Moving} */ moving) {
+function reach(
+  /** @type {Layer[]} */ layers,
+  /** @type {any[]} */ measured,
+  /** @type {any} */ quantity,
+  /** @type {Moving} */ moving,
+) {
   const ofLayers = layers.flatMap((layer) => layer.rows.flatMap((r) => [r.predicted, r.q05, r.q95]));
-  const values = [...ofLayers, ...measured.flatMap((r) => [r.measured, ...moving.rangeOf(r)])].filter((value) => value !== null && value !== undefined);
+  const values = [...ofLayers, ...measured.flatMap((r) => [r.measured, ...moving.rangeOf(r)])].filter(
+    (value) => value !== null && value !== undefined,
+  );
   return [Math.min(...values) * quantity.scale, Math.max(...values) * quantity.scale];
 }
 
 /** The lines of a model: one for each group of runs. */
-function layerMarks(/** @type {Layer & { hasBands: boolean }} */ layer, /** @type {Map<string, any>} */ place, /** @type {any} */ x, /** @type {any} */ value, /** @type {boolean} */ isMany) {
+function layerMarks(
+  /** @type {Layer & { hasBands: boolean }} */ layer,
+  /** @type {Map<string, any>} */ place,
+  /** @type {any} */ x,
+  /** @type {any} */ value,
+  /** @type {boolean} */ isMany,
+) {
   const known = layer.rows.filter((r) => r.predicted !== null && r.predicted !== undefined && place.has(r.run));
   const all = [...new Set(known.map((r) => place.get(r.run)))];
   return all.flatMap((group) => {
@@ -136,12 +277,34 @@ function layerMarks(/** @type {Layer & { hasBands: boolean }} */ layer, /** @typ
     if (means.length >= LEAST_LINE) {
       return [
         ...(layer.hasBands ? [Plot.areaY(means, { ...band, curve: CURVE, fill: stroke, fillOpacity: 0.16 })] : []),
-        Plot.lineY(means, { x, y: value("predicted"), curve: CURVE, stroke, ...dash, className: layer.isGhost ? "ghost" : "model" }),
+        Plot.lineY(means, {
+          x,
+          y: value("predicted"),
+          curve: CURVE,
+          stroke,
+          ...dash,
+          className: layer.isGhost ? "ghost" : "model",
+        }),
       ];
     }
     return [
       ...(layer.hasBands ? [Plot.ruleX(rows, byRun(rows, { ...band, stroke, strokeOpacity: 0.5 }, isMany))] : []),
-      Plot.dot(rows, byRun(rows, { x, y: value("predicted"), stroke, symbol: "times", r: 4, ...dash, className: layer.isGhost ? "ghost" : "model" }, isMany)),
+      Plot.dot(
+        rows,
+        byRun(
+          rows,
+          {
+            x,
+            y: value("predicted"),
+            stroke,
+            symbol: "times",
+            r: 4,
+            ...dash,
+            className: layer.isGhost ? "ghost" : "model",
+          },
+          isMany,
+        ),
+      ),
     ];
   });
 }
@@ -149,7 +312,16 @@ function layerMarks(/** @type {Layer & { hasBands: boolean }} */ layer, /** @typ
 /** Rows of one place become their mean: repeats do not make a line go up and down. */
 function atEqual(/** @type {any[]} */ rows, /** @type {(r: any) => number} */ x) {
   return places(rows, x).map((all) => {
-    const of = (/** @type {string} */ key) => (all.some((r) => r[key] === null || r[key] === undefined) ? null : meanOf(all, (r) => r[key]));
-    return { ...all[0], slip: of("slip"), wheel_load_n: of("wheel_load_n"), sled_speed_m_s: of("sled_speed_m_s"), predicted: of("predicted"), q05: of("q05"), q95: of("q95") };
+    const of = (/** @type {string} */ key) =>
+      all.some((r) => r[key] === null || r[key] === undefined) ? null : meanOf(all, (r) => r[key]);
+    return {
+      ...all[0],
+      slip: of("slip"),
+      wheel_load_n: of("wheel_load_n"),
+      sled_speed_m_s: of("sled_speed_m_s"),
+      predicted: of("predicted"),
+      q05: of("q05"),
+      q95: of("q95"),
+    };
   });
 }

@@ -1,4 +1,5 @@
-// Colours and signs of series: eight hues that colour-blind readers tell apart (Okabe & Ito), each with a symbol of its own.
+// Colours and signs of series: eight hues that colour-blind readers tell apart (Okabe & Ito), each with a symbol of its
+// own.
 
 const SYMBOLS = ["circle", "square", "triangle", "diamond", "star", "wye", "cross", "times"];
 

@@ -1,7 +1,20 @@
 // Pictures and numbers as files.
 
 /** What the style sheet gives a picture, which it keeps as a file. */
-const STYLED = ["fill", "stroke", "stroke-width", "stroke-dasharray", "stroke-opacity", "fill-opacity", "opacity", "font-family", "font-size", "font-weight", "color", "text-anchor"];
+const STYLED = [
+  "fill",
+  "stroke",
+  "stroke-width",
+  "stroke-dasharray",
+  "stroke-opacity",
+  "fill-opacity",
+  "opacity",
+  "font-family",
+  "font-size",
+  "font-weight",
+  "color",
+  "text-anchor",
+];
 const PIXELS = 2;
 
 /** Lets the browser save a file. */
@@ -47,25 +60,31 @@ function legendOf(/** @type {HTMLElement} */ figure, /** @type {DOMRect} */ fram
     const box = part.getBoundingClientRect();
     return { left: box.left - frame.left + BORDER, top: box.top - frame.top, width: box.width, height: box.height };
   };
-  return [...figure.querySelectorAll(".legend > *")].flatMap((entry) => [...entry.childNodes].flatMap((node) => {
-    if (node instanceof SVGSVGElement) return [styled(node, at(node))];
-    const style = getComputedStyle(node instanceof Element ? node : entry);
-    if (node instanceof HTMLElement && !node.textContent) {
-      const { left, top, width, height } = at(node);
-      return [element("rect", { x: left, y: top, width, height, fill: style.backgroundColor })];
-    }
-    const range = document.createRange();
-    range.selectNodeContents(node);
-    const { left, top, height } = at(range);
-    const font = { "font-family": style.fontFamily, "font-size": style.fontSize, fill: style.color };
-    return node.textContent?.trim() ? [element("text", { x: left, y: top + 0.78 * height, ...font }, node.textContent)] : [];
-  }));
+  return [...figure.querySelectorAll(".legend > *")].flatMap((entry) =>
+    [...entry.childNodes].flatMap((node) => {
+      if (node instanceof SVGSVGElement) return [styled(node, at(node))];
+      const style = getComputedStyle(node instanceof Element ? node : entry);
+      if (node instanceof HTMLElement && !node.textContent) {
+        const { left, top, width, height } = at(node);
+        return [element("rect", { x: left, y: top, width, height, fill: style.backgroundColor })];
+      }
+      const range = document.createRange();
+      range.selectNodeContents(node);
+      const { left, top, height } = at(range);
+      const font = { "font-family": style.fontFamily, "font-size": style.fontSize, fill: style.color };
+      return node.textContent?.trim()
+        ? [element("text", { x: left, y: top + 0.78 * height, ...font }, node.textContent)]
+        : [];
+    }),
+  );
 }
 
 /** A picture with its title, its legend and its styles inside, on the ground of the page. */
 function markup(/** @type {HTMLElement} */ figure) {
   const picture = /** @type {SVGSVGElement} */ (figure.querySelector(".plot > svg"));
-  const [frame, plot, legend] = [figure, picture, figure.querySelector(".legend")].map((part) => part?.getBoundingClientRect());
+  const [frame, plot, legend] = [figure, picture, figure.querySelector(".legend")].map((part) =>
+    part?.getBoundingClientRect(),
+  );
   if (!frame || !plot) throw new Error("there is no picture");
   const body = getComputedStyle(document.body);
   // The title of the page may break; that of a file is one line.
@@ -75,7 +94,18 @@ function markup(/** @type {HTMLElement} */ figure) {
   const whole = element("svg", { width, height, viewBox: `0 ${shift} ${width} ${height}` });
   whole.append(
     element("rect", { x: 0, y: shift, width, height, fill: body.backgroundColor }),
-    element("text", { x: BORDER, y: shift + 0.75 * TITLE, "font-family": body.fontFamily, "font-size": 15, "font-weight": 600, fill: body.color }, title),
+    element(
+      "text",
+      {
+        x: BORDER,
+        y: shift + 0.75 * TITLE,
+        "font-family": body.fontFamily,
+        "font-size": 15,
+        "font-weight": 600,
+        fill: body.color,
+      },
+      title,
+    ),
     styled(picture, { left: plot.left - frame.left + BORDER, top: plot.top - frame.top }),
     ...legendOf(figure, frame),
   );
@@ -100,7 +130,8 @@ export async function png(figure) {
   canvas.height = PIXELS * height;
   canvas.getContext("2d")?.drawImage(image, 0, 0, canvas.width, canvas.height);
   return new Promise((resolve, reject) =>
-    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the browser makes no PNG"))), "image/png"));
+    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the browser makes no PNG"))), "image/png"),
+  );
 }
 
 /** Rows as CSV, columns in the order in which they first appear. */
@@ -110,7 +141,11 @@ export function table(/** @type {import("./figure.js").Row[]} */ rows) {
     const text = value === null || value === undefined ? "" : String(value);
     return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
   };
-  return [columns, ...rows.map((row) => columns.map((name) => row[name]))].map((line) => line.map(cell).join(",")).join("\n") + "\n";
+  return (
+    [columns, ...rows.map((row) => columns.map((name) => row[name]))]
+      .map((line) => line.map(cell).join(","))
+      .join("\n") + "\n"
+  );
 }
 
 /** Rows as a file. */

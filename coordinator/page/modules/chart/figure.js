@@ -59,7 +59,17 @@ export function Figure({ title, name, deps, draw, rows, note, legend, onDrawn })
   };
   return html`
     <figure data-figure=${name}>
-      <figcaption><b>${title}</b>${note ? html` <span class="note">${note}</span>` : null}</figcaption>
+      <figcaption>
+        <b>${title}</b>
+        ${
+          note
+            ? html`
+                ${" "}
+                <span class="note">${note}</span>
+              `
+            : null
+        }
+      </figcaption>
       <div class="plot" ref=${place}></div>
       ${failure && html`<p class="error">${failure}</p>`}
       ${legend && html`<div class="legend">${legend}</div>`}
@@ -68,7 +78,8 @@ export function Figure({ title, name, deps, draw, rows, note, legend, onDrawn })
         <button type="button" tabindex="-1" onClick=${() => saveAs("png")}>PNG</button>
         ${rows && html`<button type="button" tabindex="-1" onClick=${() => saveAs("csv")}>CSV</button>`}
       </div>
-    </figure>`;
+    </figure>
+  `;
 }
 
 /** Arrows go between the buttons of a toolbar, which is one stop of the tab key. */
@@ -90,4 +101,11 @@ export function Entry({ glyph, children }) {
 
 /** The name of a file: letters of every language stay. */
 export const fileName = (/** @type {unknown[]} */ ...parts) =>
-  parts.map((p) => words(String(p)).replace(/[^\p{L}\p{N}.+-]+/gu, "-").replace(/^-+|-+$/g, "")).filter(Boolean).join("-");
+  parts
+    .map((p) =>
+      words(String(p))
+        .replace(/[^\p{L}\p{N}.+-]+/gu, "-")
+        .replace(/^-+|-+$/g, ""),
+    )
+    .filter(Boolean)
+    .join("-");

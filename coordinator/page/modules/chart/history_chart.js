@@ -10,23 +10,56 @@ import { Plot, STYLE } from "./library.js";
 /** @param {{ history: any, name: string }} properties one channel of one run */
 export function HistoryChart({ history, name }) {
   const quantity = shown(history.unit);
-  const points = (/** @type {any} */ series) => series.t_s.map((/** @type {number} */ t, /** @type {number} */ k) => ({ t, value: series.value[k] * quantity.scale }));
+  const points = (/** @type {any} */ series) =>
+    series.t_s.map((/** @type {number} */ t, /** @type {number} */ k) => ({
+      t,
+      value: series.value[k] * quantity.scale,
+    }));
   const lines = [
     ...(history.measured ? [{ name: t`measured`, stroke: "var(--measured)", points: points(history.measured) }] : []),
-    ...history.model.map((/** @type {any} */ m, /** @type {number} */ k) => ({ name: m.label, stroke: colour(k), points: points(m) })),
+    ...history.model.map((/** @type {any} */ m, /** @type {number} */ k) => ({
+      name: m.label,
+      stroke: colour(k),
+      points: points(m),
+    })),
   ];
   const windows = [history.measured, ...history.model].filter((s) => s?.window_s).map((s) => s.window_s);
-  const draw = (/** @type {number} */ width) => Plot.plot({
-    width, height: 240, marginLeft: 56, marginBottom: 40, grid: true, style: STYLE,
-    x: { label: t`time [s]`, labelArrow: "none", labelAnchor: "center" },
-    y: { label: titled(channelName(history.channel), quantity.unit), labelArrow: "none", nice: true },
-    marks: [
-      ...windows.slice(0, 1).map(([from, to]) => Plot.rectY([0], { x1: from, x2: to, fill: "currentColor", fillOpacity: 0.06 })),
-      ...lines.map((line) => Plot.lineY(line.points, { x: "t", y: "value", stroke: line.stroke, strokeWidth: 1.3 })),
-    ],
-  });
-  const rows = () => lines.flatMap((line) => line.points.map((/** @type {any} */ p) => ({ series: line.name, t_s: p.t, [`${history.channel} [${quantity.unit}]`]: p.value })));
-  return html`<${Figure} title=${t`${channelName(history.channel)} of run ${history.run} over time`} name=${fileName(name, "history", history.run, history.channel)}
-    deps=${[history]} draw=${draw} rows=${rows}
-    legend=${lines.map((line) => html`<${Entry} glyph=${html`<path d="M0 8h16" stroke=${line.stroke} stroke-width="2" />`}>${line.name}<//>`)} />`;
+  const draw = (/** @type {number} */ width) =>
+    Plot.plot({
+      width,
+      height: 240,
+      marginLeft: 56,
+      marginBottom: 40,
+      grid: true,
+      style: STYLE,
+      x: { label: t`time [s]`, labelArrow: "none", labelAnchor: "center" },
+      y: { label: titled(channelName(history.channel), quantity.unit), labelArrow: "none", nice: true },
+      marks: [
+        ...windows
+          .slice(0, 1)
+          .map(([from, to]) => Plot.rectY([0], { x1: from, x2: to, fill: "currentColor", fillOpacity: 0.06 })),
+        ...lines.map((line) => Plot.lineY(line.points, { x: "t", y: "value", stroke: line.stroke, strokeWidth: 1.3 })),
+      ],
+    });
+  const rows = () =>
+    lines.flatMap((line) =>
+      line.points.map((/** @type {any} */ p) => ({
+        series: line.name,
+        t_s: p.t,
+        [`${history.channel} [${quantity.unit}]`]: p.value,
+      })),
+    );
+  return html`
+    <${Figure}
+      title=${t`${channelName(history.channel)} of run ${history.run} over time`}
+      name=${fileName(name, "history", history.run, history.channel)}
+      deps=${[history]}
+      draw=${draw}
+      rows=${rows}
+      legend=${lines.map(
+        (line) =>
+          html`<${Entry} glyph=${html`<path d="M0 8h16" stroke=${line.stroke} stroke-width="2" />`}>${line.name}<//>`,
+      )}
+    />
+  `;
 }

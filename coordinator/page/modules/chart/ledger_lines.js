@@ -11,6 +11,12 @@ import { colour } from "./colour.js";
 export function ledgerLines(/** @type {any} */ study) {
   return study.ledger.map((/** @type {any} */ line, /** @type {number} */ k) => {
     const member = study.members.find((/** @type {any} */ m) => m.id === line.calibration);
-    return { id: line.calibration, name: member ? modelName(study, member) : t`calibration ${line.calibration}`, effects: member?.effects ?? line.effects, colour: colour(k), line };
+    return {
+      id: line.calibration,
+      name: member ? modelName(study, member) : t`calibration ${line.calibration}`,
+      effects: member?.effects ?? line.effects,
+      colour: colour(k),
+      line,
+    };
   });
 }

@@ -7,8 +7,8 @@ const LEAST_REACH = 6;
 const SVG = "http://www.w3.org/2000/svg";
 
 /**
- * @typedef {{ run: string, x: number, y: number, reach: number, d: string, fill?: string | null, stroke?: string | null }} Mark
- *   its middle, its outline in the picture, and its colours where the group has none
+ * @typedef {{ run: string, x: number, y: number, reach: number, d: string, fill?: string | null, stroke?: string | null
+ *   }} Mark its middle, its outline in the picture, and its colours where the group has none
  */
 /** @type {WeakMap<Element, Mark[]>} */
 const marksOf = new WeakMap();
@@ -19,11 +19,21 @@ export function outline(/** @type {{ tagName: string, getAttribute: (name: strin
   switch (element.tagName) {
     case "circle": {
       const [x, y, r] = [number("cx"), number("cy"), number("r")];
-      return { x, y, reach: Math.max(r, LEAST_REACH), d: `M${x - r},${y}a${r},${r} 0 1,0 ${2 * r},0a${r},${r} 0 1,0 ${-2 * r},0` };
+      return {
+        x,
+        y,
+        reach: Math.max(r, LEAST_REACH),
+        d: `M${x - r},${y}a${r},${r} 0 1,0 ${2 * r},0a${r},${r} 0 1,0 ${-2 * r},0`,
+      };
     }
     case "rect": {
       const [x, y, width, height] = [number("x"), number("y"), number("width"), number("height")];
-      return { x: x + width / 2, y: y + height / 2, reach: Math.max(width, height) / 2, d: `M${x},${y}h${width}v${height}h${-width}Z` };
+      return {
+        x: x + width / 2,
+        y: y + height / 2,
+        reach: Math.max(width, height) / 2,
+        d: `M${x},${y}h${width}v${height}h${-width}Z`,
+      };
     }
     case "line": {
       const [x1, y1, x2, y2] = [number("x1"), number("y1"), number("x2"), number("y2")];
@@ -31,20 +41,30 @@ export function outline(/** @type {{ tagName: string, getAttribute: (name: strin
     }
     default: {
       const [left, top] = numbersOf(element.getAttribute("transform") ?? "");
-      return { x: left ?? 0, y: top ?? 0, reach: LEAST_REACH, d: moved(element.getAttribute("d") ?? "", left ?? 0, top ?? 0) };
+      return {
+        x: left ?? 0,
+        y: top ?? 0,
+        reach: LEAST_REACH,
+        d: moved(element.getAttribute("d") ?? "", left ?? 0, top ?? 0),
+      };
     }
   }
 }
 
 const numbersOf = (/** @type {string} */ text) => text.match(/-?[\d.]+(?:e-?\d+)?/g)?.map(Number) ?? [];
 
-/** @type {{ d: string, parts: { head: string, x: number, y: number }[] }} the symbol that was moved last: most marks of a group have one */
+/**
+ * @type {{ d: string, parts: { head: string, x: number, y: number }[] }} the symbol that was moved last: most marks of
+ *   a group have one
+ */
 let last = { d: "", parts: [] };
 
 /** The data of a symbol elsewhere: its absolute ends move, what follows them is relative. */
 export function moved(/** @type {string} */ d, /** @type {number} */ left, /** @type {number} */ top) {
   if (d !== last.d) last = { d, parts: partsOf(d) };
-  return last.parts.map(({ head, x, y }) => (Number.isNaN(x) ? head : `${head}${rounded(x + left)},${rounded(y + top)}`)).join("");
+  return last.parts
+    .map(({ head, x, y }) => (Number.isNaN(x) ? head : `${head}${rounded(x + left)},${rounded(y + top)}`))
+    .join("");
 }
 
 /** A place in the picture to a thousandth of a pixel, which keeps paths short. */
@@ -56,7 +76,16 @@ function partsOf(/** @type {string} */ d) {
     const numbers = numbersOf(values);
     if (!"MLA".includes(command)) return { head: text, x: NaN, y: NaN };
     const [x, y] = numbers.slice(-2);
-    return { head: command + numbers.slice(0, -2).map((value) => `${value},`).join(""), x, y };
+    return {
+      head:
+        command +
+        numbers
+          .slice(0, -2)
+          .map((value) => `${value},`)
+          .join(""),
+      x,
+      y,
+    };
   });
 }
 
@@ -64,13 +93,18 @@ function partsOf(/** @type {string} */ d) {
  * The marks of a group by the element of the first one: their places and colours are those that the scales give.
  * @param {{ tagName: string, getAttribute: (name: string) => string | null }} first
  * @param {ArrayLike<number>} index of the data
- * @param {Record<"x" | "y" | "y1" | "y2", number[] | undefined> & Record<"fill" | "stroke", string[] | undefined>} values
+ * @param {Record<"x" | "y" | "y1" | "y2", number[] | undefined> & Record<"fill" | "stroke", string[] | undefined>}
+ *   values
  * @param {(place: number) => string} runOf
  * @returns {Mark[]}
  */
 export function marksLike(first, index, { x = [], y, y1, y2, fill, stroke }, runOf) {
   const pattern = outline(first);
-  const colours = (/** @type {number} */ k) => ({ run: runOf(k), fill: fill?.[k] ?? null, stroke: stroke?.[k] ?? null });
+  const colours = (/** @type {number} */ k) => ({
+    run: runOf(k),
+    fill: fill?.[k] ?? null,
+    stroke: stroke?.[k] ?? null,
+  });
   return Array.from(index, (k) => {
     const left = x[k] - x[index[0]];
     // The ends of a line differ from mark to mark.
@@ -79,12 +113,19 @@ export function marksLike(first, index, { x = [], y, y1, y2, fill, stroke }, run
       return { ...line, d: `M${rounded(line.x)},${rounded(y1[k])}V${rounded(y2[k])}`, ...colours(k) };
     }
     const top = y === undefined ? 0 : y[k] - y[index[0]];
-    return { x: pattern.x + left, y: pattern.y + top, reach: pattern.reach, d: moved(pattern.d, left, top), ...colours(k) };
+    return {
+      x: pattern.x + left,
+      y: pattern.y + top,
+      reach: pattern.reach,
+      d: moved(pattern.d, left, top),
+      ...colours(k),
+    };
   });
 }
 
 /**
- * Replaces the elements of a group by one path for each colour of its marks; on an event `light` with runs, those stand out.
+ * Replaces the elements of a group by one path for each colour of its marks; on an event `light` with runs, those stand
+ * out.
  * @param {SVGGElement} group
  * @param {Mark[]} marks
  */
@@ -117,10 +158,13 @@ function pathElement(/** @type {string[]} */ d, /** @type {Record<string, string
 
 /** The run of the mark nearest to a place; undefined where none reaches it. */
 export function nearest(/** @type {Mark[]} */ marks, /** @type {number} */ x, /** @type {number} */ y) {
-  const closest = marks.reduce((/** @type {{ run?: string, distance: number }} */ best, mark) => {
-    const distance = Math.hypot(mark.x - x, mark.y - y) - mark.reach;
-    return distance < best.distance ? { run: mark.run, distance } : best;
-  }, { distance: 0 });
+  const closest = marks.reduce(
+    (/** @type {{ run?: string, distance: number }} */ best, mark) => {
+      const distance = Math.hypot(mark.x - x, mark.y - y) - mark.reach;
+      return distance < best.distance ? { run: mark.run, distance } : best;
+    },
+    { distance: 0 },
+  );
   return closest.run;
 }
 

@@ -14,8 +14,8 @@ let frames = 0;
  * @param {SVGSVGElement & { scale: (name: string) => any }} plot
  * @param {{ rows: any[], stroke: string }[]} groups
  * @param {(row: any) => number} x
- * @returns {(y: (row: any) => number | undefined, isBeyond: boolean) => void} moves the curves to the value of each row, in the unit of the
- *   axis; they are dashed if the values lie beyond the draws
+ * @returns {(y: (row: any) => number | undefined, isBeyond: boolean) => void} moves the curves to the value of each
+ *   row, in the unit of the axis; they are dashed if the values lie beyond the draws
  */
 export function movingCurves(plot, groups, x) {
   const [across, up] = ["x", "y"].map((name) => plot.scale(name));
@@ -28,18 +28,34 @@ export function movingCurves(plot, groups, x) {
   return (y, isBeyond) => {
     layer.classList.toggle("beyond", isBeyond);
     for (const curve of curves) {
-      const known = curve.places.map((rows) => rows.filter((row) => y(row) !== undefined)).filter((rows) => rows.length > 0);
-      const points = known.map((rows) => [across.apply(meanOf(rows, x)), up.apply(meanOf(rows, /** @type {(row: any) => number} */ (y)))]);
-      curve.path.setAttribute("d", points.length >= LEAST_LINE ? line(/** @type {[number, number][]} */ (points)) ?? "" : points.map(cross).join(""));
+      const known = curve.places
+        .map((rows) => rows.filter((row) => y(row) !== undefined))
+        .filter((rows) => rows.length > 0);
+      const points = known.map((rows) => [
+        across.apply(meanOf(rows, x)),
+        up.apply(meanOf(rows, /** @type {(row: any) => number} */ (y))),
+      ]);
+      curve.path.setAttribute(
+        "d",
+        points.length >= LEAST_LINE
+          ? (line(/** @type {[number, number][]} */ (points)) ?? "")
+          : points.map(cross).join(""),
+      );
     }
   };
 }
 
 /** A group that is cut to the frame of a picture: beyond the draws a curve may go far. */
-function cut(/** @type {SVGSVGElement} */ plot, /** @type {number[]} */ [left, right], /** @type {number[]} */ [bottom, top]) {
+function cut(
+  /** @type {SVGSVGElement} */ plot,
+  /** @type {number[]} */ [left, right],
+  /** @type {number[]} */ [bottom, top],
+) {
   const id = `frame-${(frames += 1)}`;
   const frame = element("clipPath", { id });
-  frame.append(element("rect", { x: String(left), y: String(top), width: String(right - left), height: String(bottom - top) }));
+  frame.append(
+    element("rect", { x: String(left), y: String(top), width: String(right - left), height: String(bottom - top) }),
+  );
   const layer = element("g", { class: "moving", "clip-path": `url(#${id})` });
   plot.append(frame, layer);
   return layer;
@@ -48,7 +64,8 @@ function cut(/** @type {SVGSVGElement} */ plot, /** @type {number[]} */ [left, r
 /** The same bends between points as the model's lines have. */
 const line = (/** @type {[number, number][]} */ points) => d3.line().curve(d3.curveMonotoneX).digits(1)(points);
 
-const cross = (/** @type {number[]} */ [x, y]) => `M${x - CROSS} ${y - CROSS}l${2 * CROSS} ${2 * CROSS}m0 ${-2 * CROSS}l${-2 * CROSS} ${2 * CROSS}`;
+const cross = (/** @type {number[]} */ [x, y]) =>
+  `M${x - CROSS} ${y - CROSS}l${2 * CROSS} ${2 * CROSS}m0 ${-2 * CROSS}l${-2 * CROSS} ${2 * CROSS}`;
 
 function element(/** @type {string} */ name, /** @type {Record<string, string>} */ attributes) {
   const made = document.createElementNS("http://www.w3.org/2000/svg", name);

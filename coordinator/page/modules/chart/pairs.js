@@ -10,13 +10,28 @@ import { glyph } from "./glyph.js";
 import { d3, Plot, STYLE } from "./library.js";
 
 /** The regions of highest density as paths in pixels; the density is given at the points of a grid. */
-function regions(/** @type {any} */ pair, /** @type {(v: number) => number} */ x, /** @type {(v: number) => number} */ y, isTurned = false) {
+function regions(
+  /** @type {any} */ pair,
+  /** @type {(v: number) => number} */ x,
+  /** @type {(v: number) => number} */ y,
+  isTurned = false,
+) {
   const [xs, ys] = pair.grid;
   const geometry = d3.contours().size([xs.length, ys.length]);
-  const at = (/** @type {number[]} */ of, /** @type {number} */ k) => of[0] + ((k - 0.5) * (of[of.length - 1] - of[0])) / (of.length - 1);
+  const at = (/** @type {number[]} */ of, /** @type {number} */ k) =>
+    of[0] + ((k - 0.5) * (of[of.length - 1] - of[0])) / (of.length - 1);
   const values = pair.density.flat();
-  return pair.contours.map((/** @type {{ density: number }} */ { density }) => geometry.contour(values, density).coordinates.flat().map((ring) =>
-    `M${ring.map(([i, j]) => (isTurned ? [x(at(ys, j)), y(at(xs, i))] : [x(at(xs, i)), y(at(ys, j))]).map((v) => v.toFixed(1)).join(",")).join("L")}Z`).join(""));
+  const corner = (/** @type {number[]} */ [i, j]) => {
+    const [h, v] = isTurned ? [x(at(ys, j)), y(at(xs, i))] : [x(at(xs, i)), y(at(ys, j))];
+    return `${h.toFixed(1)},${v.toFixed(1)}`;
+  };
+  return pair.contours.map((/** @type {{ density: number }} */ { density }) =>
+    geometry
+      .contour(values, density)
+      .coordinates.flat()
+      .map((ring) => `M${ring.map(corner).join("L")}Z`)
+      .join(""),
+  );
 }
 
 /** Sides of a cell, which grows with the room [px]. */
@@ -28,7 +43,10 @@ const UNDER = 44;
 /** A character of a tick's label [px]. */
 const CHARACTER = 5.4;
 
-/** The scale of a parameter in the unit that is shown: 3.5 sds about the mean and the 90 % interval, within the bounds of its prior. */
+/**
+ * The scale of a parameter in the unit that is shown: 3.5 sds about the mean and the 90 % interval, within the bounds
+ * of its prior.
+ */
 export function scaleOf(/** @type {any} */ m, /** @type {[number, number]} */ range) {
   const { isLogarithm, of } = shownParameter(m);
   const low = Math.max(m.bounds[0] ?? -Infinity, Math.min(m.q05, m.mean - 3.5 * m.sd));
@@ -44,75 +62,188 @@ export function scaleOf(/** @type {any} */ m, /** @type {[number, number]} */ ra
 export function ticksOf(axis, extent) {
   const ends = [...axis.range()].sort((a, b) => a - b);
   let free = ends[0] - GAP / 2;
-  return axis.ticks(3).sort((a, b) => axis(a) - axis(b)).filter((v) => {
-    const half = extent(tickWords(v)) / 2;
-    if (axis(v) - half < free || axis(v) + half > ends[1] + GAP / 2) return false;
-    free = axis(v) + half + GAP / 2;
-    return true;
-  });
+  return axis
+    .ticks(3)
+    .sort((a, b) => axis(a) - axis(b))
+    .filter((v) => {
+      const half = extent(tickWords(v)) / 2;
+      if (axis(v) - half < free || axis(v) + half > ends[1] + GAP / 2) return false;
+      free = axis(v) + half + GAP / 2;
+      return true;
+    });
 }
 
 /** @param {{ pairs: any[], marginals: any[], name: string, onCell: (pair: any) => void }} properties */
 export function PairPlot({ pairs, marginals, name, onCell }) {
   const count = marginals.length;
-  const pairOf = (/** @type {any} */ a, /** @type {any} */ b) => pairs.find((p) => [a.name, b.name].every((n) => p.parameters.some((/** @type {any} */ q) => q.name === n)));
+  const pairOf = (/** @type {any} */ a, /** @type {any} */ b) =>
+    pairs.find((p) => [a.name, b.name].every((n) => p.parameters.some((/** @type {any} */ q) => q.name === n)));
   const draw = (/** @type {number} */ width) => {
     const side = Math.round(Math.max(SIDES[0], Math.min(SIDES[1], (width - EDGE) / count - GAP)));
     const whole = EDGE + count * (side + GAP);
     const ticks = (/** @type {any} */ g, /** @type {any} */ axis, /** @type {number[]} */ values) =>
-      g.call(axis.tickValues(values).tickFormat(tickWords).tickSize(3)).attr("font-size", 9).attr("font-family", "inherit").select(".domain").remove();
+      g
+        .call(axis.tickValues(values).tickFormat(tickWords).tickSize(3))
+        .attr("font-size", 9)
+        .attr("font-family", "inherit")
+        .select(".domain")
+        .remove();
     const label = (/** @type {any} */ text, /** @type {any} */ m) => {
       text.attr("text-anchor", "middle").attr("font-size", 10).attr("fill", "currentColor");
-      [short(shownParameter(m).name), titled("", shownParameter(m).unit).trim()].forEach((line, k) => text.append("tspan").attr("x", text.attr("x")).attr("dy", k === 0 ? 0 : "1.15em").text(line));
+      [short(shownParameter(m).name), titled("", shownParameter(m).unit).trim()].forEach((line, k) =>
+        text
+          .append("tspan")
+          .attr("x", text.attr("x"))
+          .attr("dy", k === 0 ? 0 : "1.15em")
+          .text(line),
+      );
     };
-    const svg = d3.create("svg").attr("viewBox", `0 0 ${whole} ${count * (side + GAP) + UNDER}`).attr("width", Math.min(width, whole));
-    marginals.forEach((row, j) => marginals.slice(0, j + 1).forEach((column, i) => {
-      const cell = svg.append("g").attr("transform", `translate(${EDGE + i * (side + GAP)},${j * (side + GAP)})`);
-      cell.append("rect").attr("width", side).attr("height", side).attr("fill", "transparent").attr("stroke", "var(--rule)");
-      // A picture of its own, at whose edge contours end.
-      const inside = cell.append("svg").attr("width", side).attr("height", side).attr("overflow", "hidden");
-      const [across, up] = [scaleOf(column, [0, side]), scaleOf(row, [side, 0])];
-      const x = (/** @type {number} */ v) => across(shownParameter(column).of(v));
-      if (i === j) {
-        const top = d3.max(column.posterior) ?? 1;
-        const line = d3.line((/** @type {any} */ _, k) => x(column.grid[k]), (/** @type {any} */ v) => side - (0.92 * side * v) / Number(top));
-        inside.append("path").attr("d", line(column.prior)).attr("fill", "none").attr("stroke", "var(--prior)").attr("stroke-dasharray", "4 3").attr("class", "prior");
-        inside.append("path").attr("d", line(column.posterior)).attr("fill", "none").attr("stroke", "var(--series-0)");
-      } else {
+    const svg = d3
+      .create("svg")
+      .attr("viewBox", `0 0 ${whole} ${count * (side + GAP) + UNDER}`)
+      .attr("width", Math.min(width, whole));
+    marginals.forEach((row, j) =>
+      marginals.slice(0, j + 1).forEach((column, i) => {
+        const cell = svg.append("g").attr("transform", `translate(${EDGE + i * (side + GAP)},${j * (side + GAP)})`);
+        cell
+          .append("rect")
+          .attr("width", side)
+          .attr("height", side)
+          .attr("fill", "transparent")
+          .attr("stroke", "var(--rule)");
+        // A picture of its own, at whose edge contours end.
+        const inside = cell.append("svg").attr("width", side).attr("height", side).attr("overflow", "hidden");
+        const [across, up] = [scaleOf(column, [0, side]), scaleOf(row, [side, 0])];
+        const x = (/** @type {number} */ v) => across(shownParameter(column).of(v));
+        if (i === j) {
+          const top = d3.max(column.posterior) ?? 1;
+          const line = d3.line(
+            (/** @type {any} */ _, k) => x(column.grid[k]),
+            (/** @type {any} */ v) => side - (0.92 * side * v) / Number(top),
+          );
+          inside
+            .append("path")
+            .attr("d", line(column.prior))
+            .attr("fill", "none")
+            .attr("stroke", "var(--prior)")
+            .attr("stroke-dasharray", "4 3")
+            .attr("class", "prior");
+          inside
+            .append("path")
+            .attr("d", line(column.posterior))
+            .attr("fill", "none")
+            .attr("stroke", "var(--series-0)");
+        } else {
+          const pair = pairOf(column, row);
+          if (!pair) return;
+          const y = (/** @type {number} */ v) => up(shownParameter(row).of(v));
+          regions(pair, x, y, pair.parameters[0].name !== column.name).forEach((/** @type {string} */ d) =>
+            inside
+              .append("path")
+              .attr("d", d)
+              .attr("fill", "var(--series-0)")
+              .attr("fill-opacity", 0.2)
+              .attr("fill-rule", "evenodd"),
+          );
+          cell.style("cursor", "pointer").on("click", () => onCell(pair));
+        }
+        if (j === count - 1) {
+          ticks(
+            cell.append("g").attr("transform", `translate(0,${side})`),
+            d3.axisBottom(across),
+            ticksOf(across, (text) => CHARACTER * text.length),
+          );
+          label(
+            cell
+              .append("text")
+              .attr("x", side / 2)
+              .attr("y", side + 28),
+            column,
+          );
+        }
+        if (i === 0) {
+          // The first row has a density upwards, the others their parameter.
+          if (j > 0)
+            ticks(
+              cell.append("g"),
+              d3.axisLeft(up),
+              ticksOf(up, () => 10),
+            );
+          label(
+            cell
+              .append("text")
+              .attr("x", 0)
+              .attr("transform", `translate(-60,${side / 2}) rotate(-90)`),
+            row,
+          );
+        }
+      }),
+    );
+    marginals.forEach((row, j) =>
+      marginals.slice(j + 1).forEach((column, further) => {
         const pair = pairOf(column, row);
-        if (!pair) return;
-        const y = (/** @type {number} */ v) => up(shownParameter(row).of(v));
-        regions(pair, x, y, pair.parameters[0].name !== column.name).forEach((/** @type {string} */ d) => inside.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"));
-        cell.style("cursor", "pointer").on("click", () => onCell(pair));
-      }
-      if (j === count - 1) {
-        ticks(cell.append("g").attr("transform", `translate(0,${side})`), d3.axisBottom(across), ticksOf(across, (text) => CHARACTER * text.length));
-        label(cell.append("text").attr("x", side / 2).attr("y", side + 28), column);
-      }
-      if (i === 0) {
-        // The first row has a density upwards, the others their parameter.
-        if (j > 0) ticks(cell.append("g"), d3.axisLeft(up), ticksOf(up, () => 10));
-        label(cell.append("text").attr("x", 0).attr("transform", `translate(-60,${side / 2}) rotate(-90)`), row);
-      }
-    }));
-    marginals.forEach((row, j) => marginals.slice(j + 1).forEach((column, further) => {
-      const pair = pairOf(column, row);
-      if (pair) correlation(svg.append("g").attr("transform", `translate(${EDGE + (j + 1 + further) * (side + GAP)},${j * (side + GAP)})`), pair, side);
-    }));
+        if (pair)
+          correlation(
+            svg
+              .append("g")
+              .attr("transform", `translate(${EDGE + (j + 1 + further) * (side + GAP)},${j * (side + GAP)})`),
+            pair,
+            side,
+          );
+      }),
+    );
     return /** @type {any} */ (svg.node());
   };
   const open = (/** @type {any} */ event) => event.target.value !== "" && onCell(pairs[Number(event.target.value)]);
   return html`
-    <p><label>Large picture of <select onChange=${open}><option value="">a pair: choose it, or click its cell</option>
-      ${pairs.map((p, k) => html`<option value=${k}>${p.parameters.map((/** @type {any} */ q) => shownParameter(q).name).join(t` and `)}, rank correlation ${digits(p.rank_correlation, 2)}</option>`)}</select></label></p>
-    <${Figure} title=${t`Joint posterior of ${marginals.map((m) => shownParameter(m).name).join(", ")}`} name=${fileName("pairs", name)} note="above the diagonal: rank correlations" deps=${[marginals.map((m) => m.name).join()]} draw=${draw}
-      rows=${() => densities(pairs.filter((p) => p.parameters.every((/** @type {any} */ q) => marginals.some((m) => m.name === q.name))))} />`;
+    <p>
+      <label>
+        Large picture
+        of <select onChange=${open}>
+          <option value="">a pair: choose it, or click its cell</option>
+          ${pairs.map(
+            (p, k) =>
+              html`
+                <option value=${k}>
+                  ${p.parameters.map((/** @type {any} */ q) => shownParameter(q).name).join(t` and `)}, rank
+                  correlation ${digits(p.rank_correlation, 2)}
+                </option>
+              `,
+          )}
+        </select>
+      </label>
+    </p>
+    <${Figure}
+      title=${t`Joint posterior of ${marginals.map((m) => shownParameter(m).name).join(", ")}`}
+      name=${fileName("pairs", name)}
+      note="above the diagonal: rank correlations"
+      deps=${[marginals.map((m) => m.name).join()]}
+      draw=${draw}
+      rows=${() =>
+        densities(
+          pairs.filter((p) => p.parameters.every((/** @type {any} */ q) => marginals.some((m) => m.name === q.name))),
+        )}
+    />
+  `;
 }
 
 /** The rank correlation of two parameters, the stronger the darker. */
 function correlation(/** @type {any} */ cell, /** @type {any} */ { rank_correlation: r }, /** @type {number} */ side) {
-  cell.append("rect").attr("width", side).attr("height", side).attr("fill", r < 0 ? "var(--below)" : "var(--above)").attr("fill-opacity", (0.55 * Math.abs(r)).toFixed(2)).attr("stroke", "var(--rule)");
-  cell.append("text").attr("x", side / 2).attr("y", side / 2 + 5).attr("text-anchor", "middle").attr("font-size", 14).attr("fill", "currentColor").text(minus(r.toFixed(2)));
+  cell
+    .append("rect")
+    .attr("width", side)
+    .attr("height", side)
+    .attr("fill", r < 0 ? "var(--below)" : "var(--above)")
+    .attr("fill-opacity", (0.55 * Math.abs(r)).toFixed(2))
+    .attr("stroke", "var(--rule)");
+  cell
+    .append("text")
+    .attr("x", side / 2)
+    .attr("y", side / 2 + 5)
+    .attr("text-anchor", "middle")
+    .attr("font-size", 14)
+    .attr("fill", "currentColor")
+    .text(minus(r.toFixed(2)));
 }
 
 /** A name as wide as a cell: its end tells the wheel. */
@@ -120,8 +251,17 @@ const short = (/** @type {string} */ name) => (name.length > 20 ? `${name.slice(
 
 /** The joint densities as rows: one for each point of each grid. */
 function densities(/** @type {any[]} */ pairs) {
-  return pairs.flatMap((pair) => pair.grid[0].flatMap((/** @type {number} */ x, /** @type {number} */ i) => pair.grid[1].map((/** @type {number} */ y, /** @type {number} */ j) => (
-    { x_parameter: pair.parameters[0].name, y_parameter: pair.parameters[1].name, x, y, density: pair.density[j][i] }))));
+  return pairs.flatMap((pair) =>
+    pair.grid[0].flatMap((/** @type {number} */ x, /** @type {number} */ i) =>
+      pair.grid[1].map((/** @type {number} */ y, /** @type {number} */ j) => ({
+        x_parameter: pair.parameters[0].name,
+        y_parameter: pair.parameters[1].name,
+        x,
+        y,
+        density: pair.density[j][i],
+      })),
+    ),
+  );
 }
 
 /** What the picture has for a mark: a line where it fixes one parameter, else its symbol. */
@@ -135,27 +275,83 @@ function entryGlyph(/** @type {any} */ mark, /** @type {number} */ k) {
 /** @param {{ pair: any }} properties */
 export function JointPicture({ pair }) {
   const [a, b] = pair.parameters.map((/** @type {any} */ p) => ({ id: p.name, ...shownParameter(p) }));
-  const axis = (/** @type {import("../words/parameter.js").ShownParameter} */ { name, unit, isLogarithm, of }, /** @type {number} */ k) => ({
-    label: titled(name, unit), labelArrow: /** @type {const} */ ("none"), domain: [of(pair.grid[k][0]), of(pair.grid[k].at(-1))], tickFormat: tickWords, ...(isLogarithm ? { type: /** @type {const} */ ("log"), ticks: 4 } : {}) });
+  const axis = (
+    /** @type {import("../words/parameter.js").ShownParameter} */ { name, unit, isLogarithm, of },
+    /** @type {number} */ k,
+  ) => ({
+    label: titled(name, unit),
+    labelArrow: /** @type {const} */ ("none"),
+    domain: [of(pair.grid[k][0]), of(pair.grid[k].at(-1))],
+    tickFormat: tickWords,
+    ...(isLogarithm ? { type: /** @type {const} */ ("log"), ticks: 4 } : {}),
+  });
   const mark = (/** @type {any} */ m, /** @type {number} */ k) => {
     const stroke = `var(--series-${(k % 7) + 1})`;
     if (m.at.y === null) return Plot.ruleX([a.of(m.at.x)], { stroke });
     if (m.at.x === null) return Plot.ruleY([b.of(m.at.y)], { stroke });
-    return Plot.dot([m], { x: () => a.of(m.at.x), y: () => b.of(m.at.y), symbol: /** @type {any} */ (symbol(k + 1)), stroke, fill: stroke, r: 5 });
+    return Plot.dot([m], {
+      x: () => a.of(m.at.x),
+      y: () => b.of(m.at.y),
+      symbol: /** @type {any} */ (symbol(k + 1)),
+      stroke,
+      fill: stroke,
+      r: 5,
+    });
   };
   const title = t`Joint posterior of ${a.name} and ${b.name}`;
-  return html`<${Figure} title=${title} note=${t`regions of ${pair.contours.map((/** @type {any} */ c) => Math.round(100 * c.share)).join(", ")} % of the posterior; rank correlation ${digits(pair.rank_correlation, 2)}`}
-    name=${fileName("joint", a.id, b.id)} deps=${[pair]} rows=${() => densities([pair])}
-    legend=${pair.marks.map((/** @type {any} */ m, /** @type {number} */ k) => html`<${Entry} glyph=${entryGlyph(m, k)}>${m.label}<//>`)}
-    draw=${(/** @type {number} */ width) => Plot.plot({
-      width: Math.min(width, 620), height: 420, marginLeft: 60, marginBottom: 40, grid: true, style: STYLE,
-      x: { ticks: 6, ...axis(a, 0), labelAnchor: "center" },
-      y: axis(b, 1),
-      marks: [
-        (/** @type {any} */ _, /** @type {any} */ scales) => /** @type {any} */ (d3.create("svg:g").call((g) => regions(pair, (v) => scales.x(a.of(v)), (v) => scales.y(b.of(v)))
-          .forEach((/** @type {string} */ d) => g.append("path").attr("d", d).attr("fill", "var(--series-0)").attr("fill-opacity", 0.2).attr("fill-rule", "evenodd"))).node()),
-        ...pair.lines.map((/** @type {any} */ l) => Plot.line(l.points, { x: (p) => a.of(p[0]), y: (p) => b.of(p[1]), stroke: "var(--reference)", strokeDasharray: "6 4" })),
-        ...pair.marks.map(mark),
-      ],
-    })} />`;
+  return html`
+    <${Figure}
+      title=${title}
+      note=${t`regions of ${pair.contours.map((/** @type {any} */ c) => Math.round(100 * c.share)).join(", ")} % of the
+        posterior; rank correlation ${digits(pair.rank_correlation, 2)}`}
+      name=${fileName("joint", a.id, b.id)}
+      deps=${[pair]}
+      rows=${() => densities([pair])}
+      legend=${pair.marks.map(
+        (/** @type {any} */ m, /** @type {number} */ k) => html`<${Entry} glyph=${entryGlyph(m, k)}>${m.label}<//>`,
+      )}
+      draw=${(/** @type {number} */ width) =>
+        Plot.plot({
+          width: Math.min(width, 620),
+          height: 420,
+          marginLeft: 60,
+          marginBottom: 40,
+          grid: true,
+          style: STYLE,
+          x: { ticks: 6, ...axis(a, 0), labelAnchor: "center" },
+          y: axis(b, 1),
+          marks: [
+            (/** @type {any} */ _, /** @type {any} */ scales) =>
+              /** @type {any} */ (
+                d3
+                  .create("svg:g")
+                  .call((g) =>
+                    regions(
+                      pair,
+                      (v) => scales.x(a.of(v)),
+                      (v) => scales.y(b.of(v)),
+                    ).forEach((/** @type {string} */ d) =>
+                      g
+                        .append("path")
+                        .attr("d", d)
+                        .attr("fill", "var(--series-0)")
+                        .attr("fill-opacity", 0.2)
+                        .attr("fill-rule", "evenodd"),
+                    ),
+                  )
+                  .node()
+              ),
+            ...pair.lines.map((/** @type {any} */ l) =>
+              Plot.line(l.points, {
+                x: (p) => a.of(p[0]),
+                y: (p) => b.of(p[1]),
+                stroke: "var(--reference)",
+                strokeDasharray: "6 4",
+              }),
+            ),
+            ...pair.marks.map(mark),
+          ],
+        })}
+    />
+  `;
 }

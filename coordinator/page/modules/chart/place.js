@@ -1,4 +1,5 @@
-// Places of runs along an axis: repeats of a condition stand at one place, so that a line through them does not go up and down.
+// Places of runs along an axis: repeats of a condition stand at one place, so that a line through them does not go up
+// and down.
 
 /** Runs at fewer places are drawn one by one. */
 export const LEAST_LINE = 3;
@@ -27,4 +28,5 @@ export function places(rows, x) {
 }
 
 /** The mean of a quantity over rows. */
-export const meanOf = (/** @type {any[]} */ rows, /** @type {(row: any) => number} */ of) => rows.reduce((sum, row) => sum + of(row), 0) / rows.length;
+export const meanOf = (/** @type {any[]} */ rows, /** @type {(row: any) => number} */ of) =>
+  rows.reduce((sum, row) => sum + of(row), 0) / rows.length;

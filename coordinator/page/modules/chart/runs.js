@@ -17,11 +17,21 @@ const LEAST_PX = 5;
 export function byRun(data, options, isMany = false) {
   return {
     ...options,
-    render(/** @type {any} */ index, /** @type {any} */ scales, /** @type {any} */ values, /** @type {any} */ dimensions, /** @type {any} */ context, /** @type {any} */ next) {
+    render(
+      /** @type {any} */ index,
+      /** @type {any} */ scales,
+      /** @type {any} */ values,
+      /** @type {any} */ dimensions,
+      /** @type {any} */ context,
+      /** @type {any} */ next,
+    ) {
       if (isMany && index.length > 0) {
         // One element is the pattern of all: those of a mark differ by place and colour alone.
         const merged = next(index.slice(0, 1), scales, values, dimensions, context);
-        merge(merged, marksLike(merged.firstElementChild, index, values, (place) => data[place].run));
+        merge(
+          merged,
+          marksLike(merged.firstElementChild, index, values, (place) => data[place].run),
+        );
         return merged;
       }
       const group = next(index, scales, values, dimensions, context);
@@ -81,7 +91,10 @@ export function pointable(plot, { runsIn, words } = {}) {
 function drag(plot, on, runsIn, words) {
   const scale = plot.scale("x");
   const [left, right] = scale.range;
-  const [top, bottom] = plot.scale("y").range.slice().sort((/** @type {number} */ a, /** @type {number} */ b) => a - b);
+  const [top, bottom] = plot
+    .scale("y")
+    .range.slice()
+    .sort((/** @type {number} */ a, /** @type {number} */ b) => a - b);
   /** @type {{ from: number, band: SVGRectElement | null } | null} */
   let begun = null;
   const at = (/** @type {PointerEvent} */ event) => {

@@ -30,10 +30,11 @@ export class SurfaceCurves {
    */
   attach(plot, groups, x, scale) {
     const draw = movingCurves(plot, groups, x);
-    const picture = (/** @type {Prediction} */ { outputs, isBeyond }) => draw((row) => {
-      const output = outputs.get(key(row));
-      return output === undefined ? undefined : output * scale;
-    }, isBeyond);
+    const picture = (/** @type {Prediction} */ { outputs, isBeyond }) =>
+      draw((row) => {
+        const output = outputs.get(key(row));
+        return output === undefined ? undefined : output * scale;
+      }, isBeyond);
     this.#pictures.add(picture);
     picture(this.prediction);
     return () => this.#pictures.delete(picture);

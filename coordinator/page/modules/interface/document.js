@@ -1,8 +1,8 @@
 // What openapi.json says, as this page shows it: operations by tag, schemas in words.
 
 /**
- * @typedef {{ method: string, path: string, id: string, summary: string, description: string, parameters: any[], body: any,
- *   responses: [string, any][] }} Operation
+ * @typedef {{ method: string, path: string, id: string, summary: string, description: string, parameters: any[], body:
+ *   any, responses: [string, any][] }} Operation
  */
 
 /**
@@ -11,11 +11,23 @@
  * @returns {{ name: string, description: string, operations: Operation[] }[]}
  */
 export function groups(document) {
-  const operations = Object.entries(document.paths).flatMap(([path, methods]) => Object.entries(methods).map(([method, says]) => ({
-    method: method.toUpperCase(), path, id: says.operationId, tag: says.tags[0], summary: says.summary, description: says.description,
-    parameters: says.parameters ?? [], body: says.requestBody ?? null, responses: Object.entries(says.responses),
-  })));
-  return document.tags.map((/** @type {any} */ tag) => ({ ...tag, operations: operations.filter((operation) => operation.tag === tag.name) }));
+  const operations = Object.entries(document.paths).flatMap(([path, methods]) =>
+    Object.entries(methods).map(([method, says]) => ({
+      method: method.toUpperCase(),
+      path,
+      id: says.operationId,
+      tag: says.tags[0],
+      summary: says.summary,
+      description: says.description,
+      parameters: says.parameters ?? [],
+      body: says.requestBody ?? null,
+      responses: Object.entries(says.responses),
+    })),
+  );
+  return document.tags.map((/** @type {any} */ tag) => ({
+    ...tag,
+    operations: operations.filter((operation) => operation.tag === tag.name),
+  }));
 }
 
 /** The name of the schema that a reference leads to. */
@@ -30,7 +42,11 @@ export function words(schema) {
   if (!schema) return ["anything"];
   if (schema.$ref) return [{ name: named(schema.$ref) }];
   const several = schema.oneOf ?? schema.anyOf ?? schema.allOf;
-  if (several) return several.flatMap((/** @type {any} */ one, /** @type {number} */ k) => [...(k ? [" or "] : []), ...words(one)]);
+  if (several)
+    return several.flatMap((/** @type {any} */ one, /** @type {number} */ k) => [
+      ...(k ? [" or "] : []),
+      ...words(one),
+    ]);
   if (schema.const !== undefined) return [JSON.stringify(schema.const)];
   if (schema.enum) return [schema.enum.map((/** @type {unknown} */ value) => JSON.stringify(value)).join(", ")];
   const types = [schema.type ?? "anything"].flat();

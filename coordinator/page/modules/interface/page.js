@@ -23,21 +23,31 @@ function Description({ document: description, place }) {
   return html`
     <h1>The interface</h1>
     <p><${Words}>${description.info.description}<//></p>
-    <p class="note">Version ${description.info.version}. <a href="/openapi.json">openapi.json</a> is the same for programs that generate clients.</p>
+    <p class="note">
+      Version ${description.info.version}. <a href="/openapi.json">openapi.json</a> is the same for programs that
+      generate clients.
+    </p>
     <nav class="views" aria-label="Parts of the interface">
       ${[...tags.map(({ name }) => name), "schemas"].map((name) => html`<a href=${`#/${name}`}>${title(name)}</a>`)}
     </nav>
-    ${tags.map((tag) => html`
-      <section key=${tag.name} aria-label=${tag.name}>
-        <h2 id=${tag.name}>${title(tag.name)}</h2>
-        <p>${tag.description}</p>
-        ${tag.operations.map((operation) => html`<${OperationCard} key=${operation.id} operation=${operation} isOpen=${target === operation.id} />`)}
-      </section>`)}
+    ${tags.map(
+      (tag) => html`
+        <section key=${tag.name} aria-label=${tag.name}>
+          <h2 id=${tag.name}>${title(tag.name)}</h2>
+          <p>${tag.description}</p>
+          ${tag.operations.map(
+            (operation) =>
+              html`<${OperationCard} key=${operation.id} operation=${operation} isOpen=${target === operation.id} />`,
+          )}
+        </section>
+      `,
+    )}
     <section aria-label="schemas">
       <h2 id="schemas">Schemas</h2>
       <p>What the messages hold.</p>
       <${Schemas} schemas=${description.components.schemas} open=${place[0] === "schemas" ? place[1] : null} />
-    </section>`;
+    </section>
+  `;
 }
 
 function Page() {
@@ -57,8 +67,13 @@ function Page() {
     </header>
     <main id="content" class="interface" tabindex="-1">
       ${isAsked && html`<${Login} />`}
-      ${answer ? html`<${Description} document=${answer} place=${place} />` : html`<h1>The interface</h1><${Pending} answer=${answer} error=${error} what="The description" />`}
-    </main>`;
+      ${
+        answer
+          ? html`<${Description} document=${answer} place=${place} />`
+          : html`<h1>The interface</h1><${Pending} answer=${answer} error=${error} what="The description" />`
+      }
+    </main>
+  `;
 }
 
 const place = /** @type {HTMLElement} */ (document.getElementById("page"));

@@ -5,24 +5,48 @@ import { Table } from "../part/table.js";
 import { Kind, Words } from "./text.js";
 
 /** The keys of an object, with what they hold. */
-const keys = (/** @type {any} */ schema) => Object.entries(schema.properties).map(([name, of]) => [
-  html`<code>${name}</code>${schema.required?.includes(name) ? "" : html` <span class="note">optional</span>`}`,
-  html`<${Kind} of=${of} />`,
-  html`<${Words}>${of.description ?? ""}<//>`,
-]);
+const keys = (/** @type {any} */ schema) =>
+  Object.entries(schema.properties).map(([name, of]) => [
+    html`
+      <code>${name}</code>
+      ${
+        schema.required?.includes(name)
+          ? ""
+          : html`
+              ${" "}
+              <span class="note">optional</span>
+            `
+      }
+    `,
+    html`<${Kind} of=${of} />`,
+    html`<${Words}>${of.description ?? ""}<//>`,
+  ]);
 
 /** @param {{ name: string, schema: any }} properties */
-const Keys = ({ name, schema }) => html`<${Table} label=${`keys of ${name}`} head=${["key", "holds", "meaning"]} rows=${keys(schema)} />`;
+const Keys = ({ name, schema }) =>
+  html`<${Table} label=${`keys of ${name}`} head=${["key", "holds", "meaning"]} rows=${keys(schema)} />`;
 
 /** The forms that a message may have. @param {{ name: string, schema: any }} properties */
-const Forms = ({ name, schema }) => (schema.oneOf ?? [schema]).map((/** @type {any} */ form, /** @type {number} */ k) => html`
-  ${form !== schema && form.description && html`<p><${Words}>${form.description}<//></p>`}
-  ${form.properties ? html`<${Keys} name=${k ? `${name}, form ${k + 1}` : name} schema=${form} />` : html`<p><${Kind} of=${form} /></p>`}`);
+const Forms = ({ name, schema }) =>
+  (schema.oneOf ?? [schema]).map(
+    (/** @type {any} */ form, /** @type {number} */ k) => html`
+      ${form !== schema && form.description && html`<p><${Words}>${form.description}<//></p>`}
+      ${
+        form.properties
+          ? html`<${Keys} name=${k ? `${name}, form ${k + 1}` : name} schema=${form} />`
+          : html`<p><${Kind} of=${form} /></p>`
+      }
+    `,
+  );
 
 /** @param {{ schemas: Record<string, any>, open: string | null }} properties */
-export const Schemas = ({ schemas, open }) => Object.entries(schemas).map(([name, schema]) => html`
-  <details class="schema" id=${`schemas/${name}`} key=${name} open=${open === name}>
-    <summary><code>${name}</code></summary>
-    <p><${Words}>${schema.description ?? ""}<//></p>
-    <${Forms} name=${name} schema=${schema} />
-  </details>`);
+export const Schemas = ({ schemas, open }) =>
+  Object.entries(schemas).map(
+    ([name, schema]) => html`
+      <details class="schema" id=${`schemas/${name}`} key=${name} open=${open === name}>
+        <summary><code>${name}</code></summary>
+        <p><${Words}>${schema.description ?? ""}<//></p>
+        <${Forms} name=${name} schema=${schema} />
+      </details>
+    `,
+  );

@@ -32,7 +32,11 @@ export function Trial({ operation }) {
     try {
       const response = await request("GET", path);
       const text = readable(await response.text());
-      setState({ answer: { status: response.status, text, ms: Math.round(performance.now() - begin) }, error: null, isAsking: false });
+      setState({
+        answer: { status: response.status, text, ms: Math.round(performance.now() - begin) },
+        error: null,
+        isAsking: false,
+      });
     } catch (error) {
       setState({ answer: null, error, isAsking: false });
     }
@@ -41,14 +45,34 @@ export function Trial({ operation }) {
     <form class="trial" onSubmit=${ask}>
       <h4>Try it</h4>
       <div class="actions">
-        ${operation.parameters.map(({ name, in: place }) => html`
-          <label class="field">${name} <input required=${place === "path"} value=${values[name] ?? ""} onInput=${(/** @type {any} */ e) => setValues({ ...values, [name]: e.target.value })} /></label>`)}
+        ${operation.parameters.map(
+          ({ name, in: place }) => html`
+            <label class="field">
+              ${name}${" "}
+              <input
+                required=${place === "path"}
+                value=${values[name] ?? ""}
+                onInput=${(/** @type {any} */ e) => setValues({ ...values, [name]: e.target.value })}
+              />
+            </label>
+          `,
+        )}
         ${!isStream && html`<button class="main" type="submit" disabled=${state.isAsking}>GET</button>`}
       </div>
       <pre tabindex="0" aria-label="the same on a terminal">${curl(location.origin + path, token.get())}</pre>
       <${Failure} error=${state.error} />
-      ${state.answer && html`
-        <p class="note" role="status">${state.answer.status} after ${state.answer.ms} ms, ${state.answer.text.length} characters</p>
-        <pre class="answer" tabindex="0" aria-label="the answer"><${Json} text=${state.answer.text.slice(0, MOST_CHARACTERS)} />${state.answer.text.length > MOST_CHARACTERS && "\n…"}</pre>`}
-    </form>`;
+      ${
+        state.answer &&
+        html`
+          <p class="note" role="status">
+            ${state.answer.status} after ${state.answer.ms} ms, ${state.answer.text.length} characters
+          </p>
+          <pre class="answer" tabindex="0" aria-label="the answer">
+            <${Json} text=${state.answer.text.slice(0, MOST_CHARACTERS)} />
+            ${state.answer.text.length > MOST_CHARACTERS && "\n…"}
+          </pre>
+        `
+      }
+    </form>
+  `;
 }

@@ -3,7 +3,8 @@
 /** @type {Record<string, string>} */
 export const CALCULATOR = {
   "1.24 × radius": "1.24 × Radius",
-  "90 % by the parameters alone: the noise is not known": "90 % nur nach den Parametern: das Rauschen ist nicht bekannt",
+  "90 % by the parameters alone: the noise is not known":
+    "90 % nur nach den Parametern: das Rauschen ist nicht bekannt",
   "90 % of new measurements": "90 % neuer Messungen",
   "90 % of new measurements, or by the parameters alone": "90 % neuer Messungen, oder nur nach den Parametern",
   "A pilot runs …": "Ein Probelauf rechnet …",
@@ -41,19 +42,20 @@ export const CALCULATOR = {
   "fixed at …": "fest bei …",
   "form of the prior of {0}": "Form des Priors von {0}",
   "Good to know": "Gut zu wissen",
-  greatest: "größter Wert",
+  "greatest": "größter Wert",
   "How probable is {0}": "Wie wahrscheinlich ist {0}",
   "Interpolated between computed conditions; it is computed when the sliders rest.":
     "Zwischen gerechneten Bedingungen interpoliert; gerechnet wird, wenn die Regler ruhen.",
   "is being computed …": "wird gerechnet …",
   "It is computed when it is first asked for, beside the calibrations at work, and kept then.":
     "Es wird bei der ersten Frage gerechnet, neben den laufenden Kalibrierungen, und dann behalten.",
-  "k_c / (k_phi 30 mm); one wheel cannot tell k_c from k_phi": "k_c / (k_phi 30 mm); ein Rad allein trennt k_c nicht von k_phi",
-  least: "kleinster Wert",
-  limit: "Grenze",
+  "k_c / (k_phi 30 mm); one wheel cannot tell k_c from k_phi":
+    "k_c / (k_phi 30 mm); ein Rad allein trennt k_c nicht von k_phi",
+  "least": "kleinster Wert",
+  "limit": "Grenze",
   "log10 of the pressure [Pa] at 10 mm under a plate of 30 mm radius":
     "log10 des Drucks [Pa] bei 10 mm unter einer Platte von 30 mm Radius",
-  mean: "Mittel",
+  "mean": "Mittel",
   "mean … and sd …": "Mittel … und Standardabweichung …",
   "measured near this condition": "nahe dieser Bedingung gemessen",
   "Models: several are compared by their evidence": "Modelle: mehrere werden nach ihrer Evidenz verglichen",
@@ -65,7 +67,7 @@ export const CALCULATOR = {
   "number {0} of the prior of {1}": "Zahl {0} des Priors von {1}",
   "parameters alone": "nur nach den Parametern",
   "power number": "Leistungszahl",
-  Predict: "Vorhersage",
+  "Predict": "Vorhersage",
   "Predict here": "Hier vorhersagen",
   "Predicted {0} by slip": "Vorhersage über dem Schlupf: {0}",
   "Predictions at the chosen condition": "Vorhersagen bei der gewählten Bedingung",
@@ -73,12 +75,13 @@ export const CALCULATOR = {
   "prior of {0}: two numbers above 0, the smaller first": "Prior von {0}: zwei Zahlen über 0, die kleinere zuerst",
   "prior of {0}: two numbers, the smaller first, or a mean and an sd above 0, or one number":
     "Prior von {0}: zwei Zahlen, die kleinere zuerst, oder Mittel und Standardabweichung über 0, oder eine Zahl",
-  Priors: "Priors",
+  "Priors": "Priors",
   "Priors of {0} parameters": "Priors von {0} Parametern",
   "Priors: those of dry sands": "Priors: die trockener Sande",
   "pull over load": "Zugkraft durch Last",
-  Quantity: "Größe",
-  "radius [m] of the rim with the soil that it carries along": "Radius [m] des Radkranzes mit dem Boden, den er mitnimmt",
+  "Quantity": "Größe",
+  "radius [m] of the rim with the soil that it carries along":
+    "Radius [m] des Radkranzes mit dem Boden, den er mitnimmt",
   "resistive force theory of dry sand, with the grousers; seconds":
     "Theorie der Widerstandskräfte in trockenem Sand, mit den Stollen; Sekunden",
   "slope that the pull balances": "Steigung, die die Zugkraft trägt",
@@ -97,8 +100,8 @@ export const CALCULATOR = {
   "What the calibrated models predict for a condition that nobody measured: mean and 90 % of new measurements (by the parameters alone where the noise is not known), over all models of the study by their evidence. Straight travel on level ground.":
     "Was die kalibrierten Modelle für eine Bedingung vorhersagen, die niemand gemessen hat: Mittel und 90 % neuer Messungen (nur nach den Parametern, wo das Rauschen nicht bekannt ist), über alle Modelle der Studie nach ihrer Evidenz. Geradeausfahrt auf ebenem Boden.",
   "What the job will do": "Was der Job tun wird",
-  Wheel: "Rad",
-  Whole: "Ganzes",
+  "Wheel": "Rad",
+  "Whole": "Ganzes",
   "wheels {0}": "Räder {0}",
   "Within the fitted range.": "Innerhalb des angepassten Bereichs.",
   "{0} (at {1} of {2} draws)": "{0} (bei {1} von {2} Ziehungen)",
@@ -108,7 +111,8 @@ export const CALCULATOR = {
   "Interpolated between conditions that were computed with {0} draws.":
     "Zwischen Bedingungen interpoliert, die mit {0} Ziehungen gerechnet sind.",
   "the predictions": "die Vorhersagen",
-  "The model refuses this load or speed, or one beside it.": "Das Modell lehnt diese Last oder Geschwindigkeit ab, oder eine daneben.",
+  "The model refuses this load or speed, or one beside it.":
+    "Das Modell lehnt diese Last oder Geschwindigkeit ab, oder eine daneben.",
   "This model takes minutes for a prediction.": "Dieses Modell braucht Minuten für eine Vorhersage.",
   "This report has no predictions of this model.": "Dieser Bericht hat keine Vorhersagen dieses Modells.",
   "A German Excel file": "Eine deutsche Excel-Datei",

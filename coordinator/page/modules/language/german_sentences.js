@@ -24,7 +24,8 @@ export const SENTENCES = {
     "Eine Linie bricht ab, wo sich die Fahrten geändert haben: Fehler über verschiedene Fahrten sind nicht vergleichbar.",
   "A search fits each candidate effect; its result is in the view Missing effect.":
     "Eine Suche passt jeden möglichen Effekt an; ihr Ergebnis steht unter „Was fehlt“.",
-  "a stage did not reach equilibrium: allow more moves": "eine Stufe hat das Gleichgewicht nicht erreicht: erlauben Sie mehr Schritte",
+  "a stage did not reach equilibrium: allow more moves":
+    "eine Stufe hat das Gleichgewicht nicht erreicht: erlauben Sie mehr Schritte",
   "A study calibrates a wheel–soil model against the runs of a test rig, shows where the model fails and says which effect it misses.":
     "Eine Studie kalibriert ein Rad-Boden-Modell an den Fahrten eines Prüfstands, zeigt, wo das Modell versagt, und sagt, welcher Effekt ihm fehlt.",
   "a table in other columns than runs.csv has": "eine Tabelle mit anderen Spalten als runs.csv",
@@ -35,7 +36,8 @@ export const SENTENCES = {
   "an effect is missing that the library does not have": "ein Effekt fehlt, den die Bibliothek nicht hat",
   "and whatever they name. A table of measurements alone is enough, too: text, .xlsx, .ods or .mat.":
     "und alles, was sie nennen. Eine Tabelle von Messungen allein genügt auch: Text, .xlsx, .ods oder .mat.",
-  "Beyond the draws: the dashed curves extrapolate. {0}": "Jenseits der Ziehungen: die gestrichelten Kurven extrapolieren. {0}",
+  "Beyond the draws: the dashed curves extrapolate. {0}":
+    "Jenseits der Ziehungen: die gestrichelten Kurven extrapolieren. {0}",
   "Cancel for good? Its stages so far stay, and it cannot go on.":
     "Endgültig abbrechen? Die bisherigen Stufen bleiben, und sie kann nicht fortgesetzt werden.",
   "Cannot be judged, as the experiment is described": "Nicht zu beurteilen, wie das Experiment beschrieben ist",
@@ -99,7 +101,8 @@ export const SENTENCES = {
   "nothing is missing that these data can show": "nichts fehlt, was diese Daten zeigen können",
   "Of the current models. Errors are root mean squares. Parameters: mean ± sd of the posterior; the difference is over the larger of the two sds.":
     "Von den aktuellen Modellen. Fehler sind quadratische Mittel. Parameter: Mittel ± Standardabweichung des Posteriors; der Unterschied ist durch die größere der beiden Standardabweichungen geteilt.",
-  "one of {0} effects is missing, and the data do not tell which": "einer von {0} Effekten fehlt, und die Daten sagen nicht, welcher",
+  "one of {0} effects is missing, and the data do not tell which":
+    "einer von {0} Effekten fehlt, und die Daten sagen nicht, welcher",
   "one soil: runs.csv has {0}, and an experiment has one": "ein Boden: runs.csv hat {0}, und ein Experiment hat einen",
   "One worker computed all {0} results, so that none was compared with another's.":
     "Ein Rechner hat alle {0} Ergebnisse gerechnet, darum wurde keines mit dem eines anderen verglichen.",
@@ -121,7 +124,8 @@ export const SENTENCES = {
   "Strong lines: the model at the setting of the sliders. Faint lines and bands: the mean of the posterior and its 90 % interval of a measurement. A slider spans the central 99 % of the draws of its parameter. The lines come from a {0} polynomial for each run and channel, fitted to {1} draws of the posterior with their outputs.":
     "Kräftige Linien: das Modell bei der Stellung der Regler. Blasse Linien und Bänder: das Mittel des Posteriors und sein 90-%-Intervall einer Messung. Ein Regler umfasst die mittleren 99 % der Ziehungen seines Parameters. Die Linien sind ein Polynom ({0}) für jede Fahrt und jeden Kanal, angepasst an {1} Ziehungen des Posteriors mit ihren Ausgaben.",
   "tests a law on conditions that are left out": "prüft ein Gesetz an ausgelassenen Bedingungen",
-  "tests the leading explanations on conditions that are left out": "prüft die führenden Erklärungen an ausgelassenen Bedingungen",
+  "tests the leading explanations on conditions that are left out":
+    "prüft die führenden Erklärungen an ausgelassenen Bedingungen",
   "Tests without a rolling wheel that would tell": "Versuche ohne rollendes Rad, die entscheiden würden",
   "The calibration ended before its first stage.": "Die Kalibrierung endete vor ihrer ersten Stufe.",
   "The calibration has too few draws with outputs for a response surface.":
@@ -147,16 +151,20 @@ export const SENTENCES = {
     "Die Fahrten sind da. Dies sagen sie nicht; experiment.toml und job.toml werden daraus geschrieben, und Sie können sie bearbeiten.",
   "The stronger the colour of a run, the more it tells about which explanation holds (a sure answer to a yes or no is worth {0} nats). Numbers: the runs to make, each chosen given those before it.{1}":
     "Je kräftiger die Farbe einer Fahrt, desto mehr sagt sie darüber, welche Erklärung zutrifft (eine sichere Antwort auf ja oder nein ist {0} Nat wert). Zahlen: die Fahrten, die zu machen sind, jede gewählt nach denen vor ihr.{1}",
-  "The study goes on without it, and without what followed from it.": "Die Studie geht ohne dies weiter, und ohne was daraus folgte.",
+  "The study goes on without it, and without what followed from it.":
+    "Die Studie geht ohne dies weiter, und ohne was daraus folgte.",
   "These data cannot tell forms of one class apart. Probabilities are among the forms, each of which has the same prior.":
     "Formen einer Klasse können diese Daten nicht unterscheiden. Die Wahrscheinlichkeiten gelten unter den Formen, die alle denselben Prior haben.",
   "these runs are held out already: choose runs that are fitted":
     "diese Fahrten sind schon zurückgehalten: wählen Sie angepasste Fahrten",
   "they tell little of {0}: its value is that of the prior": "sie sagen wenig über {0}: der Wert ist der des Priors",
-  "they tell little of {0}: their values are those of the priors": "sie sagen wenig über {0}: ihre Werte sind die der Priors",
-  "The study is paused before its first calibration has finished.": "Die Studie ist angehalten, bevor ihre erste Kalibrierung fertig wurde.",
+  "they tell little of {0}: their values are those of the priors":
+    "sie sagen wenig über {0}: ihre Werte sind die der Priors",
+  "The study is paused before its first calibration has finished.":
+    "Die Studie ist angehalten, bevor ihre erste Kalibrierung fertig wurde.",
   "has the button that resumes it.": "hat den Knopf, der sie fortsetzt.",
-  "too weak to be seen with these data at usual strength": "in üblicher Stärke zu schwach, um in diesen Daten sichtbar zu sein",
+  "too weak to be seen with these data at usual strength":
+    "in üblicher Stärke zu schwach, um in diesen Daten sichtbar zu sein",
   "trend: {0} {1} from one end to the other, before the fit compensates":
     "Trend: {0} {1} von einem Ende zum anderen, bevor die Anpassung ausgleicht",
   "tries effects beside a law outside the library": "versucht Effekte neben einem Gesetz außerhalb der Bibliothek",
@@ -168,7 +176,8 @@ export const SENTENCES = {
     "für die angepassten Fahrten vorhersagen würde, nach der Anpassung der Suche. Nichts wurde neu gerechnet.",
   "{0} cannot be judged: the noise is inferred with the misfit":
     "{0} nicht zu beurteilen: das Rauschen wird mit der Abweichung geschätzt",
-  "{0} depends on {1} ({2}), {3} nats over the model as it is.": "{0} hängt von {1} ab ({2}), {3} Nat über dem Modell, wie es ist.",
+  "{0} depends on {1} ({2}), {3} nats over the model as it is.":
+    "{0} hängt von {1} ab ({2}), {3} Nat über dem Modell, wie es ist.",
   "{0} evaluations/s; {1} rejected by the model": "{0} Auswertungen/s; {1} vom Modell abgelehnt",
   "{0} lie at a bound of the prior: look whether it is meant":
     "{0} liegen an einer Grenze des Priors: prüfen Sie, ob das so gemeint ist",
@@ -186,8 +195,10 @@ export const SENTENCES = {
     "{0}, das Experiment von {1}: es beschreibt Rad, Boden und Rauschen",
   "×/÷: the job has the decimal logarithm of the parameter; one sd is this factor.":
     "×/÷: Der Job hat den dekadischen Logarithmus des Parameters; eine Standardabweichung ist dieser Faktor.",
-  "The calibration failed, so that there is nothing to show.": "Die Kalibrierung ist fehlgeschlagen, deshalb gibt es nichts zu zeigen.",
+  "The calibration failed, so that there is nothing to show.":
+    "Die Kalibrierung ist fehlgeschlagen, deshalb gibt es nichts zu zeigen.",
   "The story": "Das Ergebnis",
   "says why, and what to do.": "sagt, warum, und was zu tun ist.",
-  "The study was cancelled before a calibration had finished.": "Die Studie wurde abgebrochen, bevor eine Kalibrierung fertig war.",
+  "The study was cancelled before a calibration had finished.":
+    "Die Studie wurde abgebrochen, bevor eine Kalibrierung fertig war.",
 };

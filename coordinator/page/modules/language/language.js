@@ -1,5 +1,5 @@
-// The language of the page: that of the browser, or the one that a person chose. A text is known by its English form; what the catalogue of a
-// language lacks, and what the service says, stays English.
+// The language of the page: that of the browser, or the one that a person chose. A text is known by its English form;
+// what the catalogue of a language lacks, and what the service says, stays English.
 
 import { kept } from "../kept.js";
 
@@ -18,14 +18,18 @@ const german = () => import("./german.js").then((module) => module.GERMAN);
 const catalogue = language === "de" ? await german() : null;
 if (globalThis.document) document.documentElement.lang = language;
 
+/** The end of a line within a text, with the indentation of the next. */
+const BROKEN = /\s*\n\s*/g;
+
 /**
- * A text with parts that vary: `t`3 of ${n} studies``.
+ * A text with parts that vary: `t`3 of ${n} studies``; a text that goes over several lines of its module has a space
+ * for each end of a line.
  * @param {TemplateStringsArray} texts
  * @param {unknown[]} parts
  * @returns {string}
  */
 export function t(texts, ...parts) {
-  const english = texts.reduce((all, text, k) => `${all}{${k - 1}}${text}`);
+  const english = texts.reduce((all, text, k) => `${all}{${k - 1}}${text}`).replace(BROKEN, " ");
   return (catalogue?.[english] ?? english).replace(/\{(\d)\}/g, (_, k) => String(parts[Number(k)]));
 }
 
@@ -63,7 +67,8 @@ function replaced(/** @type {readonly string[]} */ statics, /** @type {(text: st
     const key = text.replace(/\s+/g, " ").replace(MARK, (mark) => `{${parts.push(mark) - 1}}`);
     return /\p{L}/u.test(key.replace(/&\w+;/g, "")) ? by(key).replace(/\{(\d+)\}/g, (_, k) => parts[Number(k)]) : text;
   };
-  return whole.replace(BETWEEN, (_, before, space, text, after) => `${before}${space}${one(text)}${after}`)
+  return whole
+    .replace(BETWEEN, (_, before, space, text, after) => `${before}${space}${one(text)}${after}`)
     .replace(READ, (_, head, text) => `${head}${one(text)}"`);
 }
 

@@ -1,5 +1,5 @@
-// The one picture of the first view: measurements of a channel with the model before and after what was added, at the wheel load that
-// shows the difference best.
+// The one picture of the first view: measurements of a channel with the model before and after what was added, at the
+// wheel load that shows the difference best.
 
 import { CONDITIONS } from "../chart/condition.js";
 import { ChannelChart } from "../chart/channel_chart.js";
@@ -28,29 +28,49 @@ export function BeforeAfter({ study, model, channel }) {
   const ids = before === null ? [model.id] : [before, model.id];
   const answers = useAnswers(ids.map((id) => path.comparison(id)));
   const colours = new Map(ledgerLines(study).map((line) => [line.id, line.colour]));
-  const layers = ids.map((id) => ({ id, colour: ids.length === 1 ? null : colours.get(id) ?? "var(--series-0)", rows: answers[path.comparison(id)]?.rows ?? null }));
-  if (layers.some((layer) => layer.rows === null)) return html`<p class="empty" aria-busy="true">Loading the picture …</p>`;
+  const layers = ids.map((id) => ({
+    id,
+    colour: ids.length === 1 ? null : (colours.get(id) ?? "var(--series-0)"),
+    rows: answers[path.comparison(id)]?.rows ?? null,
+  }));
+  if (layers.some((layer) => layer.rows === null))
+    return html`<p class="empty" aria-busy="true">Loading the picture …</p>`;
   const ofChannel = (/** @type {any[]} */ rows) => rows.filter((row) => row.channel === channel);
   const now = ofChannel(layers.at(-1)?.rows ?? []);
   if (now.length === 0) return null;
   const { wheel, at, runs } = clearest(now, before === null ? now : ofChannel(layers[0].rows));
   const named = layers.map(({ id, colour, rows }) => ({
-    name: modelName(study, study.members.find((/** @type {any} */ m) => m.id === id)), colour, rows: rows.filter((/** @type {any} */ r) => runs.has(r.run)),
+    name: modelName(
+      study,
+      study.members.find((/** @type {any} */ m) => m.id === id),
+    ),
+    colour,
+    rows: rows.filter((/** @type {any} */ r) => runs.has(r.run)),
   }));
   const where = [at, wheel && t`wheel ${wheel}`].filter(Boolean).join(", ");
-  return html`<${ChannelChart} channel=${channel} wheel=${wheel} measurements=${named.at(-1)?.rows} layers=${named} axis=${CONDITIONS[0]} name=${`${study.name}-before-after`}
-    title=${`${t`${channelName(channel)}, measured and computed`}${where ? `, ${where}` : ""}`} />`;
+  return html`
+    <${ChannelChart}
+      channel=${channel}
+      wheel=${wheel}
+      measurements=${named.at(-1)?.rows}
+      layers=${named}
+      axis=${CONDITIONS[0]}
+      name=${`${study.name}-before-after`}
+      title=${`${t`${channelName(channel)}, measured and computed`}${where ? `, ${where}` : ""}`}
+    />
+  `;
 }
 
 /**
- * The wheel and the load, or the slip angle where the load has one level, at which the errors of two models differ most, with their runs;
- * without it where too few slips were run at it.
+ * The wheel and the load, or the slip angle where the load has one level, at which the errors of two models differ
+ * most, with their runs; without it where too few slips were run at it.
  * @param {any[]} now
  * @param {any[]} before
  */
 export function clearest(now, before) {
   const old = new Map(before.map((row) => [row.run, row]));
-  const square = (/** @type {any} */ row) => (row?.predicted === null || row?.predicted === undefined ? 0 : (row.measured - row.predicted) ** 2);
+  const square = (/** @type {any} */ row) =>
+    row?.predicted === null || row?.predicted === undefined ? 0 : (row.measured - row.predicted) ** 2;
   const wheels = [...new Set(now.map((row) => row.wheel))];
   const places = wheels.flatMap((wheel) => {
     const ofWheel = now.filter((row) => row.wheel === wheel);
@@ -58,9 +78,17 @@ export function clearest(now, before) {
     const name = PLACES[grouped.colourKey];
     const levels = name ? grouped.colours : [null];
     return levels.map((level, k) => {
-      const rows = level === null ? ofWheel : grouped.groups.filter((group) => group.colour === k).flatMap((group) => group.rows);
-      const gain = rows.reduce((sum, row) => sum + Math.abs(square(old.get(row.run)) - (now === before ? 0 : square(row))), 0) / rows.length;
-      return { wheel: wheels.length > 1 ? wheel : null, at: name && level !== null && levels.length > 1 ? name(level) : null, rows, gain };
+      const rows =
+        level === null ? ofWheel : grouped.groups.filter((group) => group.colour === k).flatMap((group) => group.rows);
+      const gain =
+        rows.reduce((sum, row) => sum + Math.abs(square(old.get(row.run)) - (now === before ? 0 : square(row))), 0) /
+        rows.length;
+      return {
+        wheel: wheels.length > 1 ? wheel : null,
+        at: name && level !== null && levels.length > 1 ? name(level) : null,
+        rows,
+        gain,
+      };
     });
   });
   const clear = places.filter(({ rows }) => new Set(rows.map((row) => row.slip)).size >= LEAST_SLIPS);

@@ -13,11 +13,16 @@ const MOST_NAMES = 60;
 
 /** The names of chosen runs for the address; null where they do not fit into one. */
 function named(/** @type {{ runs: Set<string> } | null} */ chosen) {
-  const names = [...chosen?.runs ?? []];
-  return names.length === 0 || names.length > MOST_NAMES || names.some((name) => name.includes(",")) ? null : names.join(",");
+  const names = [...(chosen?.runs ?? [])];
+  return names.length === 0 || names.length > MOST_NAMES || names.some((name) => name.includes(","))
+    ? null
+    : names.join(",");
 }
 
-/** @param {{ study: any, model: any, asked?: string, view?: string }} properties asked: the runs of the address. view: the one that is shown */
+/**
+ * @param {{ study: any, model: any, asked?: string, view?: string }} properties asked: the runs of the address. view:
+ *   the one that is shown
+ */
 export function ChosenRuns({ study, model, asked, view }) {
   const chosen = useChosen();
   const known = useRef(/** @type {string | null} */ (null));
@@ -42,7 +47,9 @@ export function ChosenRuns({ study, model, asked, view }) {
     setBusy(true);
     try {
       const { rows } = await get(path.comparison(model.id));
-      const fitted = new Set(rows.filter((/** @type {any} */ r) => r.use === "fit").map((/** @type {any} */ r) => r.run));
+      const fitted = new Set(
+        rows.filter((/** @type {any} */ r) => r.use === "fit").map((/** @type {any} */ r) => r.run),
+      );
       const without = runs.filter((run) => fitted.has(run));
       if (without.length === 0) throw new Error(t`these runs are held out already: choose runs that are fitted`);
       const created = await whatIf(model.id, without);
@@ -55,10 +62,23 @@ export function ChosenRuns({ study, model, asked, view }) {
   };
   return html`
     <aside class="chosen-runs" aria-label="Chosen runs">
-      <p><b>${chosen.label}</b>: ${runs.length === 1 ? t`1 run` : t`${runs.length} runs`}${" "}
-        <span class="note">${runs.length <= 8 ? runs.join(", ") : t`${runs.slice(0, 8).join(", ")} and ${runs.length - 8} more`}</span></p>
-      ${!isReport && model && html`<button class="main" type="button" disabled=${isBusy} onClick=${ask}>What if these runs were left out?</button>`}
+      <p>
+        <b>${chosen.label}</b>: ${runs.length === 1 ? t`1 run` : t`${runs.length} runs`}${" "}
+        <span class="note">
+          ${runs.length <= 8 ? runs.join(", ") : t`${runs.slice(0, 8).join(", ")} and ${runs.length - 8} more`}
+        </span>
+      </p>
+      ${
+        !isReport &&
+        model &&
+        html`
+          <button class="main" type="button" disabled=${isBusy} onClick=${ask}>
+            What if these runs were left out?
+          </button>
+        `
+      }
       <button type="button" onClick=${() => choose(null)}>Let them go</button>
       <${Failure} error=${failure} />
-    </aside>`;
+    </aside>
+  `;
 }

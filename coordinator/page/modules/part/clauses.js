@@ -11,6 +11,8 @@ export function Clauses({ text }) {
   const all = clauses(text);
   const later = all.slice(FIRST);
   const paragraphs = (/** @type {string[]} */ some) => some.map((clause) => html`<p>${sentence(clause)}</p>`);
-  return html`${paragraphs(all.slice(0, FIRST))}
-    ${later.length > 0 && html`<details><summary>More</summary>${paragraphs(later)}</details>`}`;
+  return html`
+    ${paragraphs(all.slice(0, FIRST))}
+    ${later.length > 0 && html`<details><summary>More</summary>${paragraphs(later)}</details>`}
+  `;
 }

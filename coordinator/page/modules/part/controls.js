@@ -20,14 +20,21 @@ export function Controls({ id, state, reload }) {
   };
   return html`
     <div class="actions" role="group" aria-label="Control of the calibration">
-      ${state === "paused"
-        ? html`<button class="main" type="button" onClick=${() => send("resume")}>Resume</button>`
-        : html`<button type="button" onClick=${() => send("pause")}>Pause</button>`}
-      ${isAsked
-        ? html`<span>Cancel for good? Its stages so far stay, and it cannot go on.</span>
-          <button type="button" onClick=${() => send("cancel")}>Cancel it</button>
-          <button type="button" onClick=${() => setAsked(false)}>Keep it</button>`
-        : html`<button type="button" onClick=${() => setAsked(true)}>Cancel</button>`}
+      ${
+        state === "paused"
+          ? html`<button class="main" type="button" onClick=${() => send("resume")}>Resume</button>`
+          : html`<button type="button" onClick=${() => send("pause")}>Pause</button>`
+      }
+      ${
+        isAsked
+          ? html`
+              <span>Cancel for good? Its stages so far stay, and it cannot go on.</span>
+              <button type="button" onClick=${() => send("cancel")}>Cancel it</button>
+              <button type="button" onClick=${() => setAsked(false)}>Keep it</button>
+            `
+          : html`<button type="button" onClick=${() => setAsked(true)}>Cancel</button>`
+      }
     </div>
-    <${Failure} error=${failure} />`;
+    <${Failure} error=${failure} />
+  `;
 }

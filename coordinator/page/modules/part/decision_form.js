@@ -39,12 +39,23 @@ export function DecisionForm({ id, onDecided }) {
     event.target.value = "";
   };
   return html`
-    <details><summary>Decide by a file</summary>
+    <details>
+      <summary>Decide by a file</summary>
       <form onSubmit=${send}>
         <p><label>A file with a table [decision] <input type="file" accept=".toml" onChange=${chosen} /></label></p>
-        <textarea aria-label="The decision, TOML" spellcheck="false" value=${text} onInput=${(/** @type {any} */ e) => setText(e.target.value)}></textarea>
-        <p class="actions"><button class="main" type="submit" disabled=${isBusy}>${isBusy ? t`is being computed …` : t`Decide now`}</button></p>
+        <textarea
+          aria-label="The decision, TOML"
+          spellcheck="false"
+          value=${text}
+          onInput=${(/** @type {any} */ e) => setText(e.target.value)}
+        ></textarea>
+        <p class="actions">
+          <button class="main" type="submit" disabled=${isBusy}>
+            ${isBusy ? t`is being computed …` : t`Decide now`}
+          </button>
+        </p>
       </form>
       <${Failure} error=${failure} />
-    </details>`;
+    </details>
+  `;
 }

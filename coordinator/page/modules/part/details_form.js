@@ -17,7 +17,12 @@ export function DetailsForm({ study, reload, close }) {
     event.preventDefault();
     const said = (/** @type {string} */ text) => text.trim() || null;
     try {
-      await describe(study.id, { name: said(name) === study.name && details.name === null ? null : said(name), author: said(author), tags: tagsOf(tags), note: said(note) });
+      await describe(study.id, {
+        name: said(name) === study.name && details.name === null ? null : said(name),
+        author: said(author),
+        tags: tagsOf(tags),
+        note: said(note),
+      });
       reload();
       close();
     } catch (error) {
@@ -31,7 +36,11 @@ export function DetailsForm({ study, reload, close }) {
       <label>Author <input value=${author} onInput=${typed(setAuthor)} /></label>
       <label>Tags <input value=${tags} placeholder="sand, wheel 3" onInput=${typed(setTags)} /></label>
       <label>Note <textarea rows="3" value=${note} onInput=${typed(setNote)}></textarea></label>
-      <div class="actions"><button class="main" type="submit">Save</button><button type="button" onClick=${close}>Leave as it is</button></div>
+      <div class="actions">
+        <button class="main" type="submit">Save</button>
+        <button type="button" onClick=${close}>Leave as it is</button>
+      </div>
       <${Failure} error=${failure} />
-    </form>`;
+    </form>
+  `;
 }

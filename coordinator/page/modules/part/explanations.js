@@ -11,14 +11,20 @@ import { few } from "../words/few.js";
 
 /** A fitted parameter below this is 0. */
 const ZERO = 1e-12;
-/** Number of explanations that are shown at first: the others have hardly any probability, and the charts beside them stay in view. */
+/**
+ * Number of explanations that are shown at first: the others have hardly any probability, and the charts beside them
+ * stay in view.
+ */
 const FIRST = 8;
-export const OTHERS = /** @type {Record<string, string>} */ ({ none: t`nothing is missing`, not_in_library: t`a law that is not in the library` });
+export const OTHERS = /** @type {Record<string, string>} */ ({
+  none: t`nothing is missing`,
+  not_in_library: t`a law that is not in the library`,
+});
 
 /**
- * @param {{ record: any, unchanged: Set<string>, ghost: string | null, kept: string | null, show: (name: string | null) => void, keep: (name: string | null) => void, add: ((extension: any) => void) | null,
- *   study: any, model: any, isBusy: boolean, reload?: () => void }} properties
- *   unchanged: the explanations whose best fit changes no prediction
+ * @param {{ record: any, unchanged: Set<string>, ghost: string | null, kept: string | null, show: (name: string | null)
+ *   => void, keep: (name: string | null) => void, add: ((extension: any) => void) | null, study: any, model: any,
+ *   isBusy: boolean, reload?: () => void }} properties unchanged: the explanations whose best fit changes no prediction
  */
 export function Explanations({ record, unchanged, ghost, kept, show, keep, add, study, model, isBusy, reload }) {
   const [asked, setAsked] = useState(/** @type {string | null} */ (null));
@@ -29,7 +35,11 @@ export function Explanations({ record, unchanged, ghost, kept, show, keep, add, 
   const told = new Map(model.story.missing.leading.map((/** @type {any} */ e) => [e.name, e.summary]));
   // A report carries the story, and no catalogue.
   const summaryOf = (/** @type {string} */ name) => summaries.get(name.split(".")[0]) ?? told.get(name);
-  const made = new Set(study.members.filter((/** @type {any} */ m) => m.kind !== "search").map((/** @type {any} */ m) => m.effects.join(" ")));
+  const made = new Set(
+    study.members
+      .filter((/** @type {any} */ m) => m.kind !== "search")
+      .map((/** @type {any} */ m) => m.effects.join(" ")),
+  );
   const isMade = (/** @type {string} */ name) => made.has([...model.effects, name].join(" "));
   const titleOf = (/** @type {string} */ name) => capital(OTHERS[name] ?? translated(summaryOf(name) ?? words(name)));
   const untried = new Map(record.not_tried.map((/** @type {any} */ e) => [e.name, e.why]));
@@ -41,32 +51,130 @@ export function Explanations({ record, unchanged, ghost, kept, show, keep, add, 
   return html`
     <div class="scroll" tabindex="0" role="region" aria-label="Explanations">
       <table class="explanations">
-        <thead><tr><th scope="col">explanation</th><th scope="col">probability</th><th scope="col" class="number">nats</th><th scope="col">strength</th><td></td></tr></thead>
-        <tbody>${effects.map((/** @type {any} */ effect) => html`
-          <tr key=${effect.name} class=${`${effect.name === ghost ? "shown" : ""} ${effect.in_credible_set ? "credible" : ""}`}
-              onMouseEnter=${() => show(effect.name)} onMouseLeave=${() => show(null)}>
-            <th scope="row">
-              <button class="plain" type="button" onFocus=${() => show(effect.name)} onBlur=${() => show(null)} onClick=${() => keep(kept === effect.name ? null : effect.name)} aria-pressed=${kept === effect.name} aria-label=${t`${titleOf(effect.name)}: show what ${OTHERS[effect.name] ?? effect.name} would change`}><b>${titleOf(effect.name)}</b></button>
-              <span class="note">${effect.name in OTHERS ? null : html`<code>${effect.name}</code>`} ${notesOn(effect)}</span>
-            </th>
-            <td><span class="bar"><i style=${{ width: `${(100 * effect.probability).toFixed(1)}%` }}></i></span> <span class="number">${probability(effect.probability)}</span></td>
-            <td class="number">${nats(effect.log_bayes_factor)}</td>
-            <td>${isAbsent(effect) ? html`<span class="note">absent: the best fit does without it</span>`
-              : unchanged.has(effect.name) ? html`<span class="note">absent: its best fit changes no prediction by a tenth of its error sd</span>`
-              : Object.entries(effect.parameters).map(([name, value]) =>
-                html`<div>${strength(name, /** @type {number} */ (value), effect.units[name])}</div>`)}
-              ${effect.prior_sds !== null && Math.abs(effect.prior_sds) > 2 ? html`<span class="note">${digits(effect.prior_sds, 2)} sds out in its prior</span>` : null}</td>
-            <td>${add && !(effect.name in OTHERS) && !untried.has(effect.name) && (isMade(effect.name)
-              ? html`<span class="note">added</span> <${TakeBack} study=${study} id=${additionOf(study, [...model.effects, effect.name])} reload=${reload} />`
-              : asked === effect.name
-              ? html`<div>Calibrate again with it?</div><button class="main" type="button" disabled=${isBusy} onClick=${() => add(extension(effect.name, record))}>Add it</button> <button type="button" onClick=${() => setAsked(null)}>Not now</button>`
-              : html`<button type="button" disabled=${isBusy} onClick=${() => setAsked(effect.name)} aria-label=${t`add ${effect.name}`}>Add</button>`)}</td>
-          </tr>`)}
+        <thead>
+          <tr>
+            <th scope="col">explanation</th>
+            <th scope="col">probability</th>
+            <th scope="col" class="number">nats</th>
+            <th scope="col">strength</th>
+            <td></td>
+          </tr>
+        </thead>
+        <tbody>
+          ${effects.map(
+            (/** @type {any} */ effect) => html`
+              <tr
+                key=${effect.name}
+                class=${`${effect.name === ghost ? "shown" : ""} ${effect.in_credible_set ? "credible" : ""}`}
+                onMouseEnter=${() => show(effect.name)}
+                onMouseLeave=${() => show(null)}
+              >
+                <th scope="row">
+                  <button
+                    class="plain"
+                    type="button"
+                    onFocus=${() => show(effect.name)}
+                    onBlur=${() => show(null)}
+                    onClick=${() => keep(kept === effect.name ? null : effect.name)}
+                    aria-pressed=${kept === effect.name}
+                    aria-label=${t`${titleOf(effect.name)}: show what ${OTHERS[effect.name] ?? effect.name} would
+                      change`}
+                  >
+                    <b>${titleOf(effect.name)}</b>
+                  </button>
+                  <span class="note">
+                    ${effect.name in OTHERS ? null : html`<code>${effect.name}</code>`} ${notesOn(effect)}
+                  </span>
+                </th>
+                <td>
+                  <span class="bar"><i style=${{ width: `${(100 * effect.probability).toFixed(1)}%` }}></i></span>${" "}
+                  <span class="number">${probability(effect.probability)}</span>
+                </td>
+                <td class="number">${nats(effect.log_bayes_factor)}</td>
+                <td>
+                  ${
+                    isAbsent(effect)
+                      ? html`<span class="note">absent: the best fit does without it</span>`
+                      : unchanged.has(effect.name)
+                        ? html`
+                            <span class="note">
+                              absent: its best fit changes no prediction by a tenth of its error sd
+                            </span>
+                          `
+                        : Object.entries(effect.parameters).map(
+                            ([name, value]) =>
+                              html`<div>${strength(name, /** @type {number} */ (value), effect.units[name])}</div>`,
+                          )
+                  }
+                  ${
+                    effect.prior_sds !== null && Math.abs(effect.prior_sds) > 2
+                      ? html`<span class="note">${digits(effect.prior_sds, 2)} sds out in its prior</span>`
+                      : null
+                  }
+                </td>
+                <td>
+                  ${
+                    add &&
+                    !(effect.name in OTHERS) &&
+                    !untried.has(effect.name) &&
+                    (isMade(effect.name)
+                      ? html`
+                          <span class="note">added</span>${" "}
+                          <${TakeBack}
+                            study=${study}
+                            id=${additionOf(study, [...model.effects, effect.name])}
+                            reload=${reload}
+                          />
+                        `
+                      : asked === effect.name
+                        ? html`
+                            <div>Calibrate again with it?</div>
+                            <button
+                              class="main"
+                              type="button"
+                              disabled=${isBusy}
+                              onClick=${() => add(extension(effect.name, record))}
+                            >
+                              Add it
+                            </button>${" "}
+                            <button type="button" onClick=${() => setAsked(null)}>Not now</button>
+                          `
+                        : html`
+                            <button
+                              type="button"
+                              disabled=${isBusy}
+                              onClick=${() => setAsked(effect.name)}
+                              aria-label=${t`add ${effect.name}`}
+                            >
+                              Add
+                            </button>
+                          `)
+                  }
+                </td>
+              </tr>
+            `,
+          )}
         </tbody>
       </table>
     </div>
-    ${record.effects.length > FIRST && html`<button type="button" onClick=${() => setAll(!isAll)}>${isAll ? t`Show fewer` : t`Show all ${record.effects.length}`}</button>`}
-    <p class="note">Nats: log evidence over that of the model as it is. Bold lines are in the 95 % set of explanations. Half of the prior probability is on “nothing is missing”.${add && t` Add calibrates a further model with the effect; this one stays as it is, and what was added can be taken back.`}</p>`;
+    ${
+      record.effects.length > FIRST &&
+      html`
+        <button type="button" onClick=${() => setAll(!isAll)}>
+          ${isAll ? t`Show fewer` : t`Show all ${record.effects.length}`}
+        </button>
+      `
+    }
+    <p class="note">
+      Nats: log evidence over that of the model as it is. Bold lines are in the 95 % set of explanations. Half of the
+      prior probability is on “nothing is
+      missing”.${
+        add &&
+        t` Add calibrates a further model with the effect; this one stays as it is, and what was added can be taken
+          back.`
+      }
+    </p>
+  `;
 }
 
 /** Nats to a digit after the point, without a sign before 0. */
@@ -74,7 +182,8 @@ const nats = (/** @type {number} */ value) => minus(value.toFixed(1)).replace(/^
 
 /** Whether the best fit leaves an effect out: its parameters are 0. */
 const isAbsent = (/** @type {any} */ { parameters }) =>
-  Object.keys(parameters).length > 0 && Object.values(parameters).every((value) => Math.abs(/** @type {number} */ (value)) < ZERO);
+  Object.keys(parameters).length > 0 &&
+  Object.values(parameters).every((value) => Math.abs(/** @type {number} */ (value)) < ZERO);
 
 /** A fitted parameter in its unit; records of earlier versions do not state it. */
 function strength(/** @type {string} */ name, /** @type {number} */ value, /** @type {string | undefined} */ stated) {
@@ -89,8 +198,10 @@ const ALIKE = 3;
 
 /** The explanations that the data cannot tell from one: of its class, and alike in evidence. */
 export function likeOf(/** @type {any[]} */ effects, /** @type {any} */ effect) {
-  const isLike = (/** @type {any} */ other) => other.class === effect.class && other.name !== effect.name
-    && Math.abs(other.log_bayes_factor - effect.log_bayes_factor) <= ALIKE;
+  const isLike = (/** @type {any} */ other) =>
+    other.class === effect.class &&
+    other.name !== effect.name &&
+    Math.abs(other.log_bayes_factor - effect.log_bayes_factor) <= ALIKE;
   return effects.filter(isLike).map((other) => other.name);
 }
 

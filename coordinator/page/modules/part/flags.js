@@ -7,7 +7,8 @@ import { capital, raised, words } from "../words/quantity.js";
 
 /** @param {{ study: any }} properties */
 export function Flags({ study }) {
-  const isOld = (/** @type {any} */ flag) => flag.calibration !== null && flag.calibration !== undefined && flag.calibration !== study.current;
+  const isOld = (/** @type {any} */ flag) =>
+    flag.calibration !== null && flag.calibration !== undefined && flag.calibration !== study.current;
   const now = study.flags.filter((/** @type {any} */ f) => !isOld(f));
   const old = study.flags.filter(isOld);
   const name = (/** @type {number} */ id) => {
@@ -17,14 +18,34 @@ export function Flags({ study }) {
   const current = study.members.find((/** @type {any} */ m) => m.id === study.current);
   return html`
     <h2 class="attention">What deserves attention</h2>
-    ${now.length === 0 ? html`<p>Nothing about the current model.</p>` : html`<${List} flags=${now} model=${current?.name} />`}
-    ${old.length > 0 && html`<details><summary>${old.length === 1 ? t`1 flag` : t`${old.length} flags`} of models that are no longer the current one</summary>
-      ${[...new Set(old.map((/** @type {any} */ f) => f.calibration))].map((id) => html`<h3>${name(/** @type {number} */ (id))}</h3>
-        <${List} flags=${old.filter((/** @type {any} */ f) => f.calibration === id)} />`)}
-    </details>`}`;
+    ${
+      now.length === 0
+        ? html`<p>Nothing about the current model.</p>`
+        : html`<${List} flags=${now} model=${current?.name} />`
+    }
+    ${
+      old.length > 0 &&
+      html`
+        <details>
+          <summary>
+            ${old.length === 1 ? t`1 flag` : t`${old.length} flags`} of models that are no longer the current one
+          </summary>
+          ${[...new Set(old.map((/** @type {any} */ f) => f.calibration))].map(
+            (id) => html`
+              <h3>${name(/** @type {number} */ (id))}</h3>
+              <${List} flags=${old.filter((/** @type {any} */ f) => f.calibration === id)} />
+            `,
+          )}
+        </details>
+      `
+    }
+  `;
 }
 
-/** What each kind of flag is about, the weightiest first: those first that make a result wrong, last those that tell of its limits. */
+/**
+ * What each kind of flag is about, the weightiest first: those first that make a result wrong, last those that tell of
+ * its limits.
+ */
 const KINDS = /** @type {Record<string, string>} */ ({
   worker: t`a worker's results differ`,
   not_equilibrated: t`sampler not settled`,
@@ -55,11 +76,23 @@ export function byWeight(/** @type {any[]} */ flags) {
 function List({ flags, model }) {
   const ordered = byWeight(flags);
   const later = ordered.slice(FIRST);
-  const list = (/** @type {any[]} */ some) => html`<ul class="flags">
-    ${some.map((f) => html`<li><b>${capital(KINDS[f.kind] ?? words(f.kind))}</b>: ${flagWords(f.text, model)}</li>`)}</ul>`;
-  return html`${list(ordered.slice(0, FIRST))}
-    ${later.length > 0 && html`<details><summary>${later.length === 1 ? t`1 more flag` : t`${later.length} more flags`}</summary>
-      ${list(later)}</details>`}`;
+  const list = (/** @type {any[]} */ some) => html`
+    <ul class="flags">
+      ${some.map((f) => html`<li><b>${capital(KINDS[f.kind] ?? words(f.kind))}</b>: ${flagWords(f.text, model)}</li>`)}
+    </ul>
+  `;
+  return html`
+    ${list(ordered.slice(0, FIRST))}
+    ${
+      later.length > 0 &&
+      html`
+        <details>
+          <summary>${later.length === 1 ? t`1 more flag` : t`${later.length} more flags`}</summary>
+          ${list(later)}
+        </details>
+      `
+    }
+  `;
 }
 
 /** The text of a flag as people write numbers, without the name of the model that it begins with. */

@@ -1,16 +1,22 @@
-// A view or part whose modules are asked for when it is first shown: whoever reads a study does not wait for those of another view.
+// A view or part whose modules are asked for when it is first shown: whoever reads a study does not wait for those of
+// another view.
 
 import { html, useEffect, useState } from "../html.js";
 import { Pending } from "./message.js";
 
 /**
- * @param {{ title: string, load: () => Promise<any>, [property: string]: any }} properties load: gives the view, always the same. The other
- *   properties are those of the view.
+ * @param {{ title: string, load: () => Promise<any>, [property: string]: any }} properties load: gives the view, always
+ *   the same. The other properties are those of the view.
  */
 export function Later({ title, load, ...properties }) {
   const [loaded, setLoaded] = useState(/** @type {any} */ ({ view: null, error: null }));
   useEffect(() => {
-    load().then((view) => setLoaded({ view, error: null }), (error) => setLoaded({ view: null, error }));
+    load().then(
+      (view) => setLoaded({ view, error: null }),
+      (error) => setLoaded({ view: null, error }),
+    );
   }, [load]);
-  return loaded.view ? html`<${loaded.view} ...${properties} />` : html`<${Pending} answer=${null} error=${loaded.error} what=${title} />`;
+  return loaded.view
+    ? html`<${loaded.view} ...${properties} />`
+    : html`<${Pending} answer=${null} error=${loaded.error} what=${title} />`;
 }

@@ -14,31 +14,72 @@ const USES = { fit: t`fitted`, holdout: t`held out` };
  */
 export function Ledger({ study, lines }) {
   const sets = dataSets(lines);
-  return html`${sets.map((set) => html`
-    ${sets.length > 1 && html`<h3>${runWords(set[0].line)}</h3>`}
-    <${SetLedger} study=${study} lines=${set} label=${sets.length > 1 ? t`Error ledger, ${runWords(set[0].line)}` : t`Error ledger`} />`)}`;
+  return html`
+    ${sets.map(
+      (set) => html`
+        ${sets.length > 1 && html`<h3>${runWords(set[0].line)}</h3>`}
+        <${SetLedger}
+          study=${study}
+          lines=${set}
+          label=${sets.length > 1 ? t`Error ledger, ${runWords(set[0].line)}` : t`Error ledger`}
+        />
+      `,
+    )}
+  `;
 }
 
-function SetLedger(/** @type {{ study: any, lines: import("../words/ledger.js").LedgerLine[], label: string }} */ { study, lines, label }) {
+/**
+ * @param {{ study: any, lines: import("../words/ledger.js").LedgerLine[], label: string }} properties
+ */
+function SetLedger({ study, lines, label }) {
   const channels = CHANNELS.filter((channel) => lines.some(({ line }) => line.error.fit[channel]));
-  const head = [t`model`, t`runs`, ...channels.map((c) => titled(short(c), shown(unitOf(c)).unit)), t`noise sds`, t`in 90 % interval`, t`ln evidence`];
-  const row = (/** @type {string} */ name, /** @type {"fit" | "holdout"} */ use, /** @type {any} */ error, /** @type {number | null | undefined} */ inside, evidence = "") => [
-    name, USES[use],
+  const head = [
+    t`model`,
+    t`runs`,
+    ...channels.map((c) => titled(short(c), shown(unitOf(c)).unit)),
+    t`noise sds`,
+    t`in 90 % interval`,
+    t`ln evidence`,
+  ];
+  const row = (
+    /** @type {string} */ name,
+    /** @type {"fit" | "holdout"} */ use,
+    /** @type {any} */ error,
+    /** @type {number | null | undefined} */ inside,
+    evidence = "",
+  ) => [
+    name,
+    USES[use],
     ...channels.map((c) => (error[c] ? errorWords(error[c].rmse * shown(unitOf(c)).scale) : "–")),
     errorWords(error.all.rmse_fixed_sigma ?? error.all.rmse_sigma),
     inside === null || inside === undefined ? "–" : `${Math.round(100 * inside)} %`,
     evidence,
   ];
-  const rows = lines.flatMap(({ name, line }) => /** @type {const} */ (["fit", "holdout"]).filter((use) => line.error[use]).map((use) => {
-    const evidence = use === "fit" && line.log_evidence !== null ? minus(line.log_evidence.toFixed(1)) : "";
-    return row(use === "fit" ? name : "", use, line.error[use], line.coverage90?.[use], evidence);
-  }));
+  const rows = lines.flatMap(({ name, line }) =>
+    /** @type {const} */ (["fit", "holdout"])
+      .filter((use) => line.error[use])
+      .map((use) => {
+        const evidence = use === "fit" && line.log_evidence !== null ? minus(line.log_evidence.toFixed(1)) : "";
+        return row(use === "fit" ? name : "", use, line.error[use], line.coverage90?.[use], evidence);
+      }),
+  );
   for (const [name, of] of beside(study, lines)) {
     if (of?.holdout) rows.push(row(name, "holdout", of.holdout, of.coverage90?.holdout));
   }
-  const isByWidth = lines.some(({ line }) => /** @type {const} */ (["fit", "holdout"]).some((use) => isInsideByWidth(line.error[use], line.coverage90?.[use])));
-  return html`<${Table} label=${label} head=${head} rows=${rows} numbers=${head.map((_, k) => k).filter((k) => k > 1)} />
-    ${isByWidth && html`<p class="note">${t`In 90 % interval: the intervals are as wide as the error, so this share does not support the model.`}</p>`}`;
+  const isByWidth = lines.some(({ line }) =>
+    /** @type {const} */ (["fit", "holdout"]).some((use) => isInsideByWidth(line.error[use], line.coverage90?.[use])),
+  );
+  return html`
+    <${Table} label=${label} head=${head} rows=${rows} numbers=${head.map((_, k) => k).filter((k) => k > 1)} />
+    ${
+      isByWidth &&
+      html`
+        <p class="note">
+          ${t`In 90 % interval: the intervals are as wide as the error, so this share does not support the model.`}
+        </p>
+      `
+    }
+  `;
 }
 
 /** The errors in noise standard deviations above which intervals of that noise would hold few of the measurements. */
@@ -53,5 +94,9 @@ function isInsideByWidth(/** @type {any} */ error, /** @type {number | null | un
 function beside(/** @type {any} */ study, /** @type {any[]} */ lines) {
   const current = lines.find((own) => own.id === study.current)?.line;
   const combined = current && study.combined?.models > 1 ? study.combined : null;
-  return /** @type {[string, any][]} */ ([[t`current, corrected`, current?.corrected], [t`all, combined`, combined], [t`interpolation`, current?.baseline]]);
+  return /** @type {[string, any][]} */ ([
+    [t`current, corrected`, current?.corrected],
+    [t`all, combined`, combined],
+    [t`interpolation`, current?.baseline],
+  ]);
 }

@@ -12,8 +12,19 @@ export function Login() {
   return html`
     <form class="card login" onSubmit=${enter}>
       <h2>This service asks for a token</h2>
-      <p>Whoever runs the service makes one with <code>coordinator token add NAME --role submit</code>. It stays in this browser and is sent to this service alone.</p>
-      <label>Token <input type="password" autocomplete="off" value=${secret} onInput=${(/** @type {any} */ e) => setSecret(e.target.value)} /></label>
+      <p>
+        Whoever runs the service makes one with <code>coordinator token add NAME --role submit</code>. It stays in this
+        browser and is sent to this service alone.
+      </p>
+      <label>
+        Token <input
+          type="password"
+          autocomplete="off"
+          value=${secret}
+          onInput=${(/** @type {any} */ e) => setSecret(e.target.value)}
+        />
+      </label>
       <button class="main" type="submit">Use it</button>
-    </form>`;
+    </form>
+  `;
 }

@@ -18,7 +18,15 @@ function Wait(/** @type {{ what: string }} */ { what }) {
     const timer = setTimeout(() => setLong(true), LONG_MS);
     return () => clearTimeout(timer);
   }, []);
-  return html`<p class="empty" aria-busy="true">Loading ${what} …</p>${isLong && html`<p class="note">It is computed when it is first asked for, beside the calibrations at work, and kept then.</p>`}`;
+  return html`
+    <p class="empty" aria-busy="true">Loading ${what} …</p>
+    ${
+      isLong &&
+      html`
+        <p class="note">It is computed when it is first asked for, beside the calibrations at work, and kept then.</p>
+      `
+    }
+  `;
 }
 
 /** @param {{ error: any }} properties */

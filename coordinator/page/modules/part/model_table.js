@@ -12,7 +12,11 @@ export function ModelTable({ comparison }) {
   return html`
     <h2>Which model</h2>
     <${Table} label="Which model" head=${head} rows=${rows} numbers=${numbers} />
-    <p class="note">Probabilities compare these ${comparison.models.length} models alone, from equal prior odds. ${leftOutWords(comparison)}. Noise sds: error
-      over the noise; a model that is right has about 1. p of chi-square: how often noise alone leaves so large residuals of the fitted runs; if that of
-      the most probable model is below 0.01, the answer is “none of these”.</p>`;
+    <p class="note">
+      Probabilities compare these ${comparison.models.length} models alone, from equal prior
+      odds. ${leftOutWords(comparison)}. Noise sds: error over the noise; a model that is right has about 1. p of
+      chi-square: how often noise alone leaves so large residuals of the fitted runs; if that of the most probable model
+      is below 0.01, the answer is “none of these”.
+    </p>
+  `;
 }

@@ -1,4 +1,5 @@
-// What the search cannot speak about: what the experiment does not state, what is too weak to see, what the model refuses.
+// What the search cannot speak about: what the experiment does not state, what is too weak to see, what the model
+// refuses.
 
 import { html } from "../html.js";
 import { t, translated } from "../language/language.js";
@@ -24,9 +25,35 @@ export function NotTried({ record }) {
     [t`no longer improves the evidence`, record.drop],
   ];
   return html`
-    ${untried.size > 0 && html`<h2>Cannot be judged, as the experiment is described</h2>
-      <ul>${[...untried.values()].map((same) => html`<li><b>${folded(same.names).join(", ")}</b>: ${raised(same.why)}.${" "}
-        ${same.needs.startsWith("runs ") ? t`To be measured: ${translated(same.needs)}.` : html`To be stated: <code>${same.needs}</code>.`}</li>`)}</ul>`}
-    ${lists.filter(([, names]) => names.length > 0).map(([words, names]) => html`
-      <details><summary>${folded(/** @type {string[]} */ (names)).length} ${words}</summary><p>${folded(/** @type {string[]} */ (names)).join(", ")}</p></details>`)}`;
+    ${
+      untried.size > 0 &&
+      html`
+        <h2>Cannot be judged, as the experiment is described</h2>
+        <ul>
+          ${[...untried.values()].map(
+            (same) => html`
+              <li>
+                <b>${folded(same.names).join(", ")}</b>: ${raised(same.why)}.${" "}
+                ${
+                  same.needs.startsWith("runs ")
+                    ? t`To be measured: ${translated(same.needs)}.`
+                    : html`To be stated: <code>${same.needs}</code>.`
+                }
+              </li>
+            `,
+          )}
+        </ul>
+      `
+    }
+    ${lists
+      .filter(([, names]) => names.length > 0)
+      .map(
+        ([words, names]) => html`
+          <details>
+            <summary>${folded(/** @type {string[]} */ (names)).length} ${words}</summary>
+            <p>${folded(/** @type {string[]} */ (names)).join(", ")}</p>
+          </details>
+        `,
+      )}
+  `;
 }

@@ -12,12 +12,24 @@ const sliders = () => import("./parameter_sliders.js").then((module) => module.P
 export function ParameterFold({ model, line, rows, axis, name }) {
   const [isOpen, setOpen] = useState(false);
   if (!line) return null;
-  const what = line.response_surface === null
-    ? html`<p class="empty">The calibration has too few draws with outputs for a response surface.</p>`
-    : html`<${Later} key=${model.id} title="What each parameter does" load=${sliders} model=${model} rows=${rows} axis=${axis} name=${name} />`;
+  const what =
+    line.response_surface === null
+      ? html`<p class="empty">The calibration has too few draws with outputs for a response surface.</p>`
+      : html`
+          <${Later}
+            key=${model.id}
+            title="What each parameter does"
+            load=${sliders}
+            model=${model}
+            rows=${rows}
+            axis=${axis}
+            name=${name}
+          />
+        `;
   return html`
     <details class="sliders" onToggle=${(/** @type {any} */ event) => setOpen(event.target.open)}>
       <summary>What each parameter does</summary>
       ${isOpen && what}
-    </details>`;
+    </details>
+  `;
 }

@@ -1,4 +1,5 @@
-// What each parameter does: sliders that move the curves of the model at once, by the response surface of the calibration.
+// What each parameter does: sliders that move the curves of the model at once, by the response surface of the
+// calibration.
 
 import { SurfaceCurves } from "../chart/surface_curves.js";
 import { html, useEffect, useMemo, useState } from "../html.js";
@@ -15,8 +16,8 @@ import { Table } from "./table.js";
 /** @typedef {import("../response_surface.js").ResponseSurface} ResponseSurface */
 
 /**
- * @param {{ model: any, rows: any[], axis: any, name: string }} properties rows: of the comparison. axis: the condition that the pictures are
- *   drawn against.
+ * @param {{ model: any, rows: any[], axis: any, name: string }} properties rows: of the comparison. axis: the condition
+ *   that the pictures are drawn against.
  */
 export function ParameterSliders({ model, rows, axis, name }) {
   const { answer, error } = useAnswer(path.responseSurface(model.id));
@@ -24,7 +25,10 @@ export function ParameterSliders({ model, rows, axis, name }) {
   return html`<${Sliders} surface=${answer} rows=${rows} axis=${axis} name=${name} />`;
 }
 
-function Sliders(/** @type {{ surface: ResponseSurface, rows: any[], axis: any, name: string }} */ { surface, rows, axis, name }) {
+/**
+ * @param {{ surface: ResponseSurface, rows: any[], axis: any, name: string }} properties
+ */
+function Sliders({ surface, rows, axis, name }) {
   const [setting, setSetting] = useState(meanSetting(surface));
   const [follows, setFollows] = useState(false);
   const curves = useMemo(() => new SurfaceCurves(surface), [surface]);
@@ -34,44 +38,87 @@ function Sliders(/** @type {{ surface: ResponseSurface, rows: any[], axis: any, 
     const frame = requestAnimationFrame(() => curves.move(prediction));
     return () => cancelAnimationFrame(frame);
   }, [curves, setting]);
-  const move = (/** @type {number} */ k, /** @type {number} */ value) => setSetting(changed(surface, setting, k, value, follows));
+  const move = (/** @type {number} */ k, /** @type {number} */ value) =>
+    setSetting(changed(surface, setting, k, value, follows));
   return html`
-    <p class="note">Strong lines: the model at the setting of the sliders. Faint lines and bands: the mean of the posterior and its 90 % interval of a
-      measurement. A slider spans the central 99 % of the draws of its parameter. The lines come from a ${surface.degree} polynomial for each run and
-      channel, fitted to ${surface.draws} draws of the posterior with their outputs.</p>
+    <p class="note">
+      Strong lines: the model at the setting of the sliders. Faint lines and bands: the mean of the posterior and its 90
+      % interval of a measurement. A slider spans the central 99 % of the draws of its parameter. The lines come from
+      a ${surface.degree} polynomial for each run and channel, fitted to ${surface.draws} draws of the posterior with
+      their outputs.
+    </p>
     <div class="setting">
       <div class="controls">
-        ${surface.parameters.map((parameter, k) => html`<${Slider} key=${parameter.name} id=${`slider-${surface.calibration}-${k}`} parameter=${parameter} value=${setting[k]} move=${(/** @type {number} */ value) => move(k, value)} />`)}
+        ${surface.parameters.map(
+          (parameter, k) =>
+            html`
+              <${Slider}
+                key=${parameter.name}
+                id=${`slider-${surface.calibration}-${k}`}
+                parameter=${parameter}
+                value=${setting[k]}
+                move=${(/** @type {number} */ value) => move(k, value)}
+              />
+            `,
+        )}
         <p class="actions">
           <button type="button" onClick=${() => setSetting(meanSetting(surface))}>Reset to the posterior mean</button>
-          <label><input type="checkbox" checked=${follows} onChange=${(/** @type {any} */ event) => setFollows(event.target.checked)} /> the others follow, as they do among the draws</label>
+          <label>
+            <input
+              type="checkbox"
+              checked=${follows}
+              onChange=${(/** @type {any} */ event) => setFollows(event.target.checked)}
+            /> the
+            others follow, as they do among the draws
+          </label>
         </p>
         <p class=${`reach ${prediction.isBeyond ? "beyond" : ""}`} role="status">${reachWords(surface, prediction)}</p>
         <${Errors} surface=${surface} rows=${rows} outputs=${prediction.outputs} />
       </div>
       <${ChannelCharts} layers=${layers} axis=${axis} name=${`${name}-sliders`} moving=${curves} small />
-    </div>`;
+    </div>
+  `;
 }
 
-function Slider(/** @type {{ id: string, parameter: ResponseSurface["parameters"][number], value: number, move: (value: number) => void }} */ { id, parameter, value, move }) {
+/**
+ * @param {{ id: string, parameter: ResponseSurface["parameters"][number], value: number,
+ *   move: (value: number) => void }} properties
+ */
+function Slider({ id, parameter, value, move }) {
   const text = parameterValue(parameter, value, 4);
   return html`
     <div class="slider">
       <label for=${id}>${shownParameter(parameter).name}</label>
       <span class="value" aria-hidden="true">${text}</span>
-      <input id=${id} type="range" step="any" min=${coordinate(parameter, parameter.lower)} max=${coordinate(parameter, parameter.upper)} value=${coordinate(parameter, value)}
-        aria-valuetext=${text} onInput=${(/** @type {any} */ event) => move(valueAt(parameter, Number(event.target.value)))} />
-    </div>`;
+      <input
+        id=${id}
+        type="range"
+        step="any"
+        min=${coordinate(parameter, parameter.lower)}
+        max=${coordinate(parameter, parameter.upper)}
+        value=${coordinate(parameter, value)}
+        aria-valuetext=${text}
+        onInput=${(/** @type {any} */ event) => move(valueAt(parameter, Number(event.target.value)))}
+      />
+    </div>
+  `;
 }
 
 /** Where the setting lies among the draws. */
-function reachWords(/** @type {ResponseSurface} */ surface, /** @type {import("../response_surface.js").Prediction} */ { distance, isBeyond }) {
-  const place = t`Mahalanobis distance ${digits(distance, 2)} from the posterior mean; 99 % of the draws lie within ${digits(surface.radius, 2)}.`;
+function reachWords(
+  /** @type {ResponseSurface} */ surface,
+  /** @type {import("../response_surface.js").Prediction} */ { distance, isBeyond },
+) {
+  const place = t`Mahalanobis distance ${digits(distance, 2)} from the posterior mean; 99 % of the draws lie within
+    ${digits(surface.radius, 2)}.`;
   return isBeyond ? t`Beyond the draws: the dashed curves extrapolate. ${place}` : t`Among the draws. ${place}`;
 }
 
-/** What the setting is worth against the measurements, and what the surface is worth against the model. */
-function Errors(/** @type {{ surface: ResponseSurface, rows: any[], outputs: Map<string, number> }} */ { surface, rows, outputs }) {
+/**
+ * What the setting is worth against the measurements, and what the surface is worth against the model.
+ * @param {{ surface: ResponseSurface, rows: any[], outputs: Map<string, number> }} properties
+ */
+function Errors({ surface, rows, outputs }) {
   const atMean = useMemo(() => predict(surface, meanSetting(surface)).outputs, [surface]);
   const uses = ["fit", "holdout"].filter((use) => rows.some((row) => row.use === use));
   const table = surface.channels.map(({ channel, unit, rmse: error, rmse_sigma: sigma }) => {
@@ -79,14 +126,27 @@ function Errors(/** @type {{ surface: ResponseSurface, rows: any[], outputs: Map
     const difference = (/** @type {string} */ use) => {
       const own = rows.filter((row) => row.channel === channel && row.use === use);
       const [here, mean] = [outputs, atMean].map((all) => rmse(own, all));
-      return here === null || mean === null ? "–" : html`<span><b>${digits(here * scale)}</b><br />(${digits(mean * scale)})</span>`;
+      return here === null || mean === null
+        ? "–"
+        : html`<span><b>${digits(here * scale)}</b><br />(${digits(mean * scale)})</span>`;
     };
     const inSds = sigma === null || sigma === undefined ? "" : html`<br />${digits(sigma, 2)} noise sds`;
-    return [html`${channelName(channel)} <span class="whole">[${name}]</span>`, ...uses.map(difference), html`<span>${size(error, unit, 2)}${inSds}</span>`];
+    return [
+      html`${channelName(channel)} <span class="whole">[${name}]</span>`,
+      ...uses.map(difference),
+      html`<span>${size(error, unit, 2)}${inSds}</span>`,
+    ];
   });
   const titles = { fit: t`RMSE, fitted runs`, holdout: t`held-out runs` };
   return html`
-    <${Table} label="Errors at the setting of the sliders" rows=${table} numbers=${[...uses.map((_, k) => k + 1), uses.length + 1]}
-      head=${[t`channel`, ...uses.map((use) => titles[/** @type {"fit" | "holdout"} */ (use)]), t`error of the curves`]} />
-    <p class="note">In brackets: at the posterior mean. Error of the curves: from the model, at draws that are left out of the fit.</p>`;
+    <${Table}
+      label="Errors at the setting of the sliders"
+      rows=${table}
+      numbers=${[...uses.map((_, k) => k + 1), uses.length + 1]}
+      head=${[t`channel`, ...uses.map((use) => titles[/** @type {"fit" | "holdout"} */ (use)]), t`error of the curves`]}
+    />
+    <p class="note">
+      In brackets: at the posterior mean. Error of the curves: from the model, at draws that are left out of the fit.
+    </p>
+  `;
 }

@@ -9,21 +9,52 @@ import { Table } from "./table.js";
 /** @param {{ marginals: any[], line: any }} properties line: of the ledger, or of the point estimates */
 export function ParameterTable({ marginals, line }) {
   if (marginals.length === 0) {
-    const rows = Object.entries(line?.parameters ?? {}).map(([name, value]) => [parameterName(name, null), digits(typeof value === "number" ? value : /** @type {any} */ (value).map, 4)]);
-    return html`<${Table} label="Parameters" head=${[t`parameter (SI units)`, t`value of the fit`]} rows=${rows} numbers=${[1]} />`;
+    const rows = Object.entries(line?.parameters ?? {}).map(([name, value]) => [
+      parameterName(name, null),
+      digits(typeof value === "number" ? value : /** @type {any} */ (value).map, 4),
+    ]);
+    return html`
+      <${Table} label="Parameters" head=${[t`parameter (SI units)`, t`value of the fit`]} rows=${rows} numbers=${[1]} />
+    `;
   }
   const rows = marginals.map((m) => {
     const called = shownParameter(m);
     const known = line?.parameters?.[m.name];
     const [low, high, mode] = parameterValues(called, [m.q05, m.q95, m.mode], m.mean, m.sd);
     return [
-      called.name, called.unit, meanAndSpread(called, m.mean, m.sd), t`${low} to ${high}`, mode, known ? meanAndSpread(called, known.prior_mean, known.prior_sd) : "–",
+      called.name,
+      called.unit,
+      meanAndSpread(called, m.mean, m.sd),
+      t`${low} to ${high}`,
+      mode,
+      known ? meanAndSpread(called, known.prior_mean, known.prior_sd) : "–",
       m.reference === null ? "–" : digits(called.of(m.reference), 4),
-      html`${called.isLogarithm && html`<code>${m.name}</code>`} ${known?.at_bound && html`<span class="state failed">at a bound of its prior</span>`}`,
+      html`
+        ${called.isLogarithm && html`<code>${m.name}</code>`}${" "}
+        ${known?.at_bound && html`<span class="state failed">at a bound of its prior</span>`}
+      `,
     ];
   });
   const hasFactor = marginals.some((m) => shownParameter(m).isLogarithm);
-  return html`<${Table} label="Parameters" numbers=${[2, 3, 4, 5, 6]} rows=${rows}
-    head=${[t`parameter`, t`unit`, t`mean ± sd`, t`90 % interval`, t`mode`, t`prior mean ± sd`, t`reference value`, t`remark`]} />
-    ${hasFactor && html`<p class="note">×/÷: the job has the decimal logarithm of the parameter; one sd is this factor.</p>`}`;
+  return html`
+    <${Table}
+      label="Parameters"
+      numbers=${[2, 3, 4, 5, 6]}
+      rows=${rows}
+      head=${[
+        t`parameter`,
+        t`unit`,
+        t`mean ± sd`,
+        t`90 % interval`,
+        t`mode`,
+        t`prior mean ± sd`,
+        t`reference value`,
+        t`remark`,
+      ]}
+    />
+    ${
+      hasFactor &&
+      html`<p class="note">×/÷: the job has the decimal logarithm of the parameter; one sd is this factor.</p>`
+    }
+  `;
 }

@@ -32,21 +32,50 @@ export function Particles({ id, stages }) {
   };
   const parameters = parametersOf(answer ?? first.answer);
   const chosen = pair.map((k) => Math.min(k, Math.max(0, parameters.length - 1)));
-  const points = (/** @type {any} */ of) => (of?.samples ?? []).map((/** @type {any} */ s) => ({ x: s.theta[chosen[0]], y: s.theta[chosen[1]] }));
+  const points = (/** @type {any} */ of) =>
+    (of?.samples ?? []).map((/** @type {any} */ s) => ({ x: s.theta[chosen[0]], y: s.theta[chosen[1]] }));
   const now = useMemo(() => points(answer), [answer, ...chosen]);
   const early = useMemo(() => points(first.answer), [first.answer, ...chosen]);
   const exponent = stages[stage - 1]?.tempering_exponent;
-  const choose = (/** @type {number} */ end) => html`<label>${end === 0 ? t`across` : t`up`} <select value=${chosen[end]}
-    onChange=${(/** @type {any} */ e) => setPair(pair.map((k, i) => (i === end ? Number(e.target.value) : k)))}>
-    ${parameters.map(({ name, unit }, k) => html`<option value=${k} selected=${k === chosen[end]}>${shownParameter({ name, unit }).name}</option>`)}</select></label>`;
+  const choose = (/** @type {number} */ end) => html`
+    <label>
+      ${end === 0 ? t`across` : t`up`}${" "}
+      <select
+        value=${chosen[end]}
+        onChange=${(/** @type {any} */ e) => setPair(pair.map((k, i) => (i === end ? Number(e.target.value) : k)))}
+      >
+        ${parameters.map(
+          ({ name, unit }, k) =>
+            html`<option value=${k} selected=${k === chosen[end]}>${shownParameter({ name, unit }).name}</option>`,
+        )}
+      </select>
+    </label>
+  `;
   return html`
     <h2>Particles</h2>
-    <div class="actions">${choose(0)} ${choose(1)}
+    <div class="actions">
+      ${choose(0)} ${choose(1)}
       <button type="button" onClick=${play}>${isPlaying ? t`Stop` : t`Play`}</button>
-      <label>stage <input type="range" min="1" max=${last} value=${stage} onInput=${(/** @type {any} */ e) => { setPlaying(false); setStage(Number(e.target.value)); }} /></label>
-      <output>${stage} of ${last}: exponent ${digits(exponent, 2)}</output></div>
+      <label>
+        stage <input
+          type="range"
+          min="1"
+          max=${last}
+          value=${stage}
+          onInput=${(/** @type {any} */ e) => {
+            setPlaying(false);
+            setStage(Number(e.target.value));
+          }}
+        />
+      </label>
+      <output>${stage} of ${last}: exponent ${digits(exponent, 2)}</output>
+    </div>
     ${now.length === 0 && !isPlaying && html`<${Pending} answer=${answer} error=${error} what="This population" />`}
-    ${now.length + early.length > 0 && html`<${Cloud} id=${id} x=${parameters[chosen[0]]} y=${parameters[chosen[1]]} now=${now} early=${early} />`}`;
+    ${
+      now.length + early.length > 0 &&
+      html`<${Cloud} id=${id} x=${parameters[chosen[0]]} y=${parameters[chosen[1]]} now=${now} early=${early} />`
+    }
+  `;
 }
 
 /**
@@ -64,26 +93,63 @@ export function RecordedParticles({ id }) {
   return html`
     <h2>Particles</h2>
     <div class="actions" role="group" aria-label="Stage">
-      ${stages.map((/** @type {any} */ s, /** @type {number} */ k) => html`<button type="button" aria-pressed=${k === shown} onClick=${() => setPlace(k)}>stage ${s.stage}: exponent ${digits(s.tempering_exponent, 2)}</button>`)}</div>
-    <${Cloud} id=${id} x=${parameters[0]} y=${parameters[1]} now=${of(stages[shown])} early=${of(stages[0])} />`;
+      ${stages.map(
+        (/** @type {any} */ s, /** @type {number} */ k) =>
+          html`
+            <button type="button" aria-pressed=${k === shown} onClick=${() => setPlace(k)}>
+              stage ${s.stage}: exponent ${digits(s.tempering_exponent, 2)}
+            </button>
+          `,
+      )}
+    </div>
+    <${Cloud} id=${id} x=${parameters[0]} y=${parameters[1]} now=${of(stages[shown])} early=${of(stages[0])} />
+  `;
 }
 
 /**
  * The parameters of a population with their units.
  * @param {{ parameters: string[], units: string[] } | null} population
  */
-const parametersOf = (population) => (population?.parameters ?? []).map((name, k) => ({ name, unit: population?.units[k] ?? "1" }));
+const parametersOf = (population) =>
+  (population?.parameters ?? []).map((name, k) => ({ name, unit: population?.units[k] ?? "1" }));
 
-/** @param {{ id: number, x: { name: string, unit: string }, y: { name: string, unit: string }, now: any[], early: any[] }} properties */
+/**
+ * @param {{ id: number, x: { name: string, unit: string }, y: { name: string, unit: string }, now: any[], early: any[]
+ *   }} properties
+ */
 function Cloud({ id, x, y, now, early }) {
   const [across, up] = [x, y].map(shownParameter);
   const at = { x: (/** @type {any} */ p) => across.of(p.x), y: (/** @type {any} */ p) => up.of(p.y) };
-  const axis = (/** @type {import("../words/parameter.js").ShownParameter} */ { name, unit, isLogarithm }) => ({ label: titled(name, unit), labelArrow: /** @type {const} */ ("none"), ticks: 6, tickFormat: tickWords, ...(isLogarithm ? { type: /** @type {const} */ ("log") } : {}) });
-  return html`<${Figure} title=${t`Particles in ${across.name} and ${up.name}`} note="grey: the first stage, close to the prior"
-    name=${fileName("particles", id, x.name, y.name)} deps=${[now, early]} rows=${() => now}
-    draw=${(/** @type {number} */ width) => Plot.plot({
-      width: Math.min(width, 640), height: 380, marginLeft: 64, marginTop: 26, marginBottom: 40, grid: true, style: STYLE,
-      x: { ...axis(across), labelAnchor: "center" }, y: axis(up),
-      marks: [Plot.dot(early, { ...at, r: 1.6, fill: "var(--rule)" }), Plot.dot(now, { ...at, r: 2, fill: "var(--series-0)", fillOpacity: 0.6 })],
-    })} />`;
+  const axis = (/** @type {import("../words/parameter.js").ShownParameter} */ { name, unit, isLogarithm }) => ({
+    label: titled(name, unit),
+    labelArrow: /** @type {const} */ ("none"),
+    ticks: 6,
+    tickFormat: tickWords,
+    ...(isLogarithm ? { type: /** @type {const} */ ("log") } : {}),
+  });
+  return html`
+    <${Figure}
+      title=${t`Particles in ${across.name} and ${up.name}`}
+      note="grey: the first stage, close to the prior"
+      name=${fileName("particles", id, x.name, y.name)}
+      deps=${[now, early]}
+      rows=${() => now}
+      draw=${(/** @type {number} */ width) =>
+        Plot.plot({
+          width: Math.min(width, 640),
+          height: 380,
+          marginLeft: 64,
+          marginTop: 26,
+          marginBottom: 40,
+          grid: true,
+          style: STYLE,
+          x: { ...axis(across), labelAnchor: "center" },
+          y: axis(up),
+          marks: [
+            Plot.dot(early, { ...at, r: 1.6, fill: "var(--rule)" }),
+            Plot.dot(now, { ...at, r: 2, fill: "var(--series-0)", fillOpacity: 0.6 }),
+          ],
+        })}
+    />
+  `;
 }

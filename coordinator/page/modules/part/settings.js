@@ -7,10 +7,22 @@ import { chosenUnits, SLIPS, UNIT_SETS } from "../units.js";
 export function Settings() {
   const options = (/** @type {[string, string][]} */ all, /** @type {string} */ now) =>
     all.map(([value, name]) => html`<option value=${value} selected=${value === now}>${name}</option>`);
-  const same = (/** @type {string[]} */ values) => values.map((value) => /** @type {[string, string]} */ ([value, value]));
-  return html`<div class="settings" role="group" aria-label="Language and units">
-    <select aria-label="Language" onChange=${(/** @type {any} */ e) => choose(e.target.value)}>${options(Object.entries(LANGUAGES), language)}</select>
-    <select aria-label="Units" onChange=${(/** @type {any} */ e) => chosenUnits.chooseSet(e.target.value)}>${options(same(UNIT_SETS), chosenUnits.set)}</select>
-    <select aria-label="Slip as" onChange=${(/** @type {any} */ e) => chosenUnits.chooseSlip(e.target.value)}>${options(SLIPS.map((slip) => /** @type {[string, string]} */ ([slip, t`slip ${slip}`])), chosenUnits.slip)}</select>
-  </div>`;
+  const same = (/** @type {string[]} */ values) =>
+    values.map((value) => /** @type {[string, string]} */ ([value, value]));
+  return html`
+    <div class="settings" role="group" aria-label="Language and units">
+      <select aria-label="Language" onChange=${(/** @type {any} */ e) => choose(e.target.value)}>
+        ${options(Object.entries(LANGUAGES), language)}
+      </select>
+      <select aria-label="Units" onChange=${(/** @type {any} */ e) => chosenUnits.chooseSet(e.target.value)}>
+        ${options(same(UNIT_SETS), chosenUnits.set)}
+      </select>
+      <select aria-label="Slip as" onChange=${(/** @type {any} */ e) => chosenUnits.chooseSlip(e.target.value)}>
+        ${options(
+          SLIPS.map((slip) => /** @type {[string, string]} */ ([slip, t`slip ${slip}`])),
+          chosenUnits.slip,
+        )}
+      </select>
+    </div>
+  `;
 }

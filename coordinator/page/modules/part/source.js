@@ -5,5 +5,9 @@ import { html } from "../html.js";
 /** @param {{ campaign: any }} properties */
 export function Source({ campaign }) {
   if (!campaign) return null;
-  return html`<p class="note">Measurements: ${campaign.citation}${campaign.digitised && html`; <strong>${campaign.digitised}</strong>`}</p>`;
+  return html`
+    <p class="note">
+      Measurements: ${campaign.citation}${campaign.digitised && html`; <strong>${campaign.digitised}</strong>`}
+    </p>
+  `;
 }

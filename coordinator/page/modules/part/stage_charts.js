@@ -19,11 +19,41 @@ export function StageCharts({ stages, name }) {
   const rows = stages.map((stage) => ({ ...stage, evidence: (evidence += stage.log_evidence_increment) }));
   const step = Math.ceil(rows.length / 6);
   const ticks = rows.map((row) => row.stage).filter((stage) => stage % step === 0);
-  return html`<div class="figures small">${CURVES.map(({ key, title, note, type }) => html`
-    <${Figure} key=${key} title=${t`${title} by stage`} note=${note} name=${fileName(name, key)} deps=${[stages]}
-      rows=${() => rows.map((row) => ({ stage: row.stage, [key]: row[key] }))}
-      draw=${(/** @type {number} */ width) => Plot.plot({
-        width, height: 190, marginLeft: 56, marginBottom: 40, style: STYLE, x: { label: t`stage`, labelArrow: "none", labelAnchor: "center", ticks, tickFormat: "d" }, y: { label: null, type: /** @type {any} */ (type), grid: type === "linear", ticks: 4, zero: key === "acceptance", ...(type === "log" ? { tickFormat: (/** @type {number} */ v) => digits(v, 1) } : {}) },
-        marks: [Plot.line(rows, { x: "stage", y: key, stroke: "var(--series-0)" }), Plot.dot(rows, { x: "stage", y: key, r: 2.5, fill: "var(--series-0)" })],
-      })} />`)}</div>`;
+  return html`
+    <div class="figures small">
+      ${CURVES.map(
+        ({ key, title, note, type }) => html`
+          <${Figure}
+            key=${key}
+            title=${t`${title} by stage`}
+            note=${note}
+            name=${fileName(name, key)}
+            deps=${[stages]}
+            rows=${() => rows.map((row) => ({ stage: row.stage, [key]: row[key] }))}
+            draw=${(/** @type {number} */ width) =>
+              Plot.plot({
+                width,
+                height: 190,
+                marginLeft: 56,
+                marginBottom: 40,
+                style: STYLE,
+                x: { label: t`stage`, labelArrow: "none", labelAnchor: "center", ticks, tickFormat: "d" },
+                y: {
+                  label: null,
+                  type: /** @type {any} */ (type),
+                  grid: type === "linear",
+                  ticks: 4,
+                  zero: key === "acceptance",
+                  ...(type === "log" ? { tickFormat: (/** @type {number} */ v) => digits(v, 1) } : {}),
+                },
+                marks: [
+                  Plot.line(rows, { x: "stage", y: key, stroke: "var(--series-0)" }),
+                  Plot.dot(rows, { x: "stage", y: key, r: 2.5, fill: "var(--series-0)" }),
+                ],
+              })}
+          />
+        `,
+      )}
+    </div>
+  `;
 }

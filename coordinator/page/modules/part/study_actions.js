@@ -30,20 +30,74 @@ export function StudyActions({ study, reload }) {
   };
   const isAtWork = AT_WORK.includes(study.state);
   return html`
-    ${isDescribed && html`<${Later} title="Name, author, tags, note" load=${detailsForm} study=${study} reload=${reload} close=${() => setDescribed(false)} />`}
+    ${
+      isDescribed &&
+      html`
+        <${Later}
+          title="Name, author, tags, note"
+          load=${detailsForm}
+          study=${study}
+          reload=${reload}
+          close=${() => setDescribed(false)}
+        />
+      `
+    }
     <div class="actions study-actions" role="group" aria-label="What to do with the study">
-      <button type="button" aria-expanded=${isDescribed} onClick=${() => setDescribed(!isDescribed)}>Name, author, tags, note</button>
-      ${study.current !== null && html`<button type="button" onClick=${() => act(async () => (await files()).save(`${fileName(study.name)}.html`, await reportOf(study.current)), () => undefined)}>Save the report</button>`}
+      <button type="button" aria-expanded=${isDescribed} onClick=${() => setDescribed(!isDescribed)}>
+        Name, author, tags, note
+      </button>
+      ${
+        study.current !== null &&
+        html`
+          <button
+            type="button"
+            onClick=${() =>
+              act(
+                async () => (await files()).save(`${fileName(study.name)}.html`, await reportOf(study.current)),
+                () => undefined,
+              )}
+          >
+            Save the report
+          </button>
+        `
+      }
       <a class="button" href=${address(["new"], { study: study.id })}>Edit and start again</a>
       <${BesideAnother} study=${study} />
-      ${!isAtWork && html`<button type="button" onClick=${() => act(() => archive(study.id, study.archived ? "restore" : "archive"), reload)}>${study.archived ? t`Take back into the list` : t`Archive`}</button>`}
-      ${!isAtWork && (isAsked
-        ? html`<span>Delete ${study.name} with all its results, for good?</span>
-          <button type="button" onClick=${() => act(() => deleteStudy(study.id), () => { location.hash = "#/"; })}>Delete it</button>
-          <button type="button" onClick=${() => setAsked(false)}>Keep it</button>`
-        : html`<button type="button" onClick=${() => setAsked(true)}>Delete</button>`)}
+      ${
+        !isAtWork &&
+        html`
+          <button
+            type="button"
+            onClick=${() => act(() => archive(study.id, study.archived ? "restore" : "archive"), reload)}
+          >
+            ${study.archived ? t`Take back into the list` : t`Archive`}
+          </button>
+        `
+      }
+      ${
+        !isAtWork &&
+        (isAsked
+          ? html`
+              <span>Delete ${study.name} with all its results, for good?</span>
+              <button
+                type="button"
+                onClick=${() =>
+                  act(
+                    () => deleteStudy(study.id),
+                    () => {
+                      location.hash = "#/";
+                    },
+                  )}
+              >
+                Delete it
+              </button>
+              <button type="button" onClick=${() => setAsked(false)}>Keep it</button>
+            `
+          : html`<button type="button" onClick=${() => setAsked(true)}>Delete</button>`)
+      }
     </div>
-    <${Failure} error=${failure} />`;
+    <${Failure} error=${failure} />
+  `;
 }
 
 /** Chooses another study to be shown beside this one; the list is asked for at the first touch. */
@@ -51,8 +105,16 @@ function BesideAnother(/** @type {{ study: any }} */ { study }) {
   const [isTouched, setTouched] = useState(false);
   const { answer } = useAnswer(isTouched ? path.studies : null);
   const others = (answer ?? []).filter((/** @type {any} */ other) => other.id !== study.id).reverse();
-  const go = (/** @type {any} */ event) => event.target.value && (location.hash = address(["beside", study.id, event.target.value]));
-  return html`<label>Beside <select onFocus=${() => setTouched(true)} onPointerDown=${() => setTouched(true)} onChange=${go}>
-    <option value="">another study</option>
-    ${others.map((/** @type {any} */ other) => html`<option value=${other.id}>${other.name} (study ${other.id})</option>`)}</select></label>`;
+  const go = (/** @type {any} */ event) =>
+    event.target.value && (location.hash = address(["beside", study.id, event.target.value]));
+  return html`
+    <label>
+      Beside <select onFocus=${() => setTouched(true)} onPointerDown=${() => setTouched(true)} onChange=${go}>
+        <option value="">another study</option>
+        ${others.map(
+          (/** @type {any} */ other) => html`<option value=${other.id}>${other.name} (study ${other.id})</option>`,
+        )}
+      </select>
+    </label>
+  `;
 }

@@ -18,12 +18,43 @@ export function StudyList({ studies }) {
   const found = listed(studies, text, order);
   const shown = isAll ? found : found.slice(0, FIRST);
   return html`
-    ${studies.length >= LEAST && html`<div class="actions" role="search">
-      <label>Find <input type="search" value=${text} placeholder="name, author, tag, effect" onInput=${(/** @type {any} */ e) => setText(e.target.value)} /></label>
-      <label>Order <select value=${order} onChange=${(/** @type {any} */ e) => setOrder(e.target.value)}>
-        ${Object.keys(ORDERS).map((name) => html`<option value=${name} selected=${name === order}>${name}</option>`)}</select></label>
-      <span class="note" role="status">${found.length === studies.length ? t`${studies.length} studies` : t`${found.length} of ${studies.length} studies`}</span>
-    </div>`}
-    ${found.length > 0 ? html`<${StudyTable} studies=${shown} choose=${setText} />` : html`<p class="empty">No study has these words.</p>`}
-    ${found.length > shown.length && html`<button type="button" onClick=${() => setAll(true)}>Show all ${found.length}</button>`}`;
+    ${
+      studies.length >= LEAST &&
+      html`
+        <div class="actions" role="search">
+          <label>
+            Find <input
+              type="search"
+              value=${text}
+              placeholder="name, author, tag, effect"
+              onInput=${(/** @type {any} */ e) => setText(e.target.value)}
+            />
+          </label>
+          <label>
+            Order <select value=${order} onChange=${(/** @type {any} */ e) => setOrder(e.target.value)}>
+              ${Object.keys(ORDERS).map(
+                (name) => html`<option value=${name} selected=${name === order}>${name}</option>`,
+              )}
+            </select>
+          </label>
+          <span class="note" role="status">
+            ${
+              found.length === studies.length
+                ? t`${studies.length} studies`
+                : t`${found.length} of ${studies.length} studies`
+            }
+          </span>
+        </div>
+      `
+    }
+    ${
+      found.length > 0
+        ? html`<${StudyTable} studies=${shown} choose=${setText} />`
+        : html`<p class="empty">No study has these words.</p>`
+    }
+    ${
+      found.length > shown.length &&
+      html`<button type="button" onClick=${() => setAll(true)}>Show all ${found.length}</button>`
+    }
+  `;
 }

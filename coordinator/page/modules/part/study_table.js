@@ -19,15 +19,32 @@ function pair(/** @type {any} */ error, /** @type {(use: any) => number | null |
 }
 
 function State(/** @type {{ study: any }} */ { study }) {
-  return html`<span class=${`state ${study.state}`}>${translated(study.state)}</span>
-    ${study.progress && html`<div class="note">${progressWords(study.progress)}</div>`}`;
+  return html`
+    <span class=${`state ${study.state}`}>${translated(study.state)}</span>
+    ${study.progress && html`<div class="note">${progressWords(study.progress)}</div>`}
+  `;
 }
 
 /** What the study found, and what it leaves open. */
 function foundBy(/** @type {any} */ study) {
-  if (study.failure) return html`<div class="found">${capital(study.failure.reason.split(" (")[0])}. <div class="note"><b>What to do:</b> ${study.failure.advice}.</div></div>`;
-  const found = study.verdict?.short ?? study.models?.split(" (")[0] ?? (study.state === "finished" ? t`no search yet` : "");
-  return found && html`<div class="found">${capital(found)}${study.verdict?.open && html`<div class="note">${study.verdict.open}</div>`}</div>`;
+  if (study.failure)
+    return html`
+      <div class="found">
+        ${capital(study.failure.reason.split(" (")[0])}.${" "}
+        <div class="note"><b>What to do:</b> ${study.failure.advice}.</div>
+      </div>
+    `;
+  const found =
+    study.verdict?.short ?? study.models?.split(" (")[0] ?? (study.state === "finished" ? t`no search yet` : "");
+  return (
+    found &&
+    html`
+      <div class="found">
+        ${capital(found)}
+        ${study.verdict?.open && html`<div class="note">${study.verdict.open}</div>`}
+      </div>
+    `
+  );
 }
 
 /** The day of the submission; its title has the time in the reader's format. */
@@ -37,23 +54,66 @@ function Day(/** @type {{ ms: number | null }} */ { ms }) {
   return html`<time class="whole" datetime=${day} title=${new Date(ms).toLocaleString()}>${day}</time>`;
 }
 
-/** @param {{ studies: any[], choose: (tag: string) => void }} properties studies: in the order in which they are shown */
+/**
+ * @param {{ studies: any[], choose: (tag: string) => void }} properties studies: in the order in which they are shown
+ */
 export function StudyTable({ studies, choose }) {
-  const channels = CHANNELS.filter((channel) => studies.some((s) => s.error?.fit?.[channel] ?? s.error?.holdout?.[channel]));
+  const channels = CHANNELS.filter((channel) =>
+    studies.some((s) => s.error?.fit?.[channel] ?? s.error?.holdout?.[channel]),
+  );
   const columns = channels.map((_, k) => k + 6);
   const rows = studies.map((study) => [
-    html`<a class="study-name" href=${address(["studies", study.id, ["finished", "failed"].includes(study.state) ? "story" : "live"])}>${study.name ?? t`study ${study.id}`}</a>
-      <div class="note">study ${study.id}${study.archived ? t`, archived` : ""}${study.details.author && `, ${study.details.author}`} <${Day} ms=${study.created_ms} /></div>
-      ${study.details.tags.length > 0 && html`<div><${Tags} tags=${study.details.tags} choose=${choose} /></div>`}`,
+    html`
+      <a
+        class="study-name"
+        href=${address(["studies", study.id, ["finished", "failed"].includes(study.state) ? "story" : "live"])}
+      >
+        ${study.name ?? t`study ${study.id}`}
+      </a>
+      <div class="note">
+        study ${study.id}${study.archived ? t`, archived` : ""}${
+          study.details.author && `, ${study.details.author}`
+        } <${Day} ms=${study.created_ms} />
+      </div>
+      ${study.details.tags.length > 0 && html`<div><${Tags} tags=${study.details.tags} choose=${choose} /></div>`}
+    `,
     html`<${State} study=${study} />`,
     foundBy(study),
-    html`<span class="whole">${words(study.model_kind ?? t`unknown`)}</span>${study.effects.length > 0 && html`<div class="note">with ${study.effects.map(words).join(", ")}</div>`}`,
-    study.error && html`${USES.filter((use) => study.error[use]).map((use) => html`<div class="whole">${use === "fit" ? t`fit` : t`held out`}</div>`)}`,
-    study.error ? pair(study.error, (use) => use.all?.rmse_fixed_sigma) : study.state === "finished" ? html`<span class="note">being computed</span>` : null,
+    html`
+      <span class="whole">${words(study.model_kind ?? t`unknown`)}</span>
+      ${study.effects.length > 0 && html`<div class="note">with ${study.effects.map(words).join(", ")}</div>`}
+    `,
+    study.error &&
+      html`
+        ${USES.filter((use) => study.error[use]).map(
+          (use) => html`<div class="whole">${use === "fit" ? t`fit` : t`held out`}</div>`,
+        )}
+      `,
+    study.error
+      ? pair(study.error, (use) => use.all?.rmse_fixed_sigma)
+      : study.state === "finished"
+        ? html`<span class="note">being computed</span>`
+        : null,
     ...channels.map((channel) => pair(study.error, (use) => use[channel]?.rmse, shown(unitOf(channel)).scale)),
   ]);
   return html`
-    <p class="note">Errors are root mean squares of prediction minus measurement of the current model; 1 × noise is as good as the measurements allow.</p>
-    <${Table} label="Studies" rows=${rows} numbers=${[5, ...columns]}
-      head=${[t`study`, t`state`, t`found`, t`model`, t`rows`, t`error [× noise]`, ...channels.map((c) => titled(short(c), shown(unitOf(c)).unit))]} />`;
+    <p class="note">
+      Errors are root mean squares of prediction minus measurement of the current model; 1 × noise is as good as the
+      measurements allow.
+    </p>
+    <${Table}
+      label="Studies"
+      rows=${rows}
+      numbers=${[5, ...columns]}
+      head=${[
+        t`study`,
+        t`state`,
+        t`found`,
+        t`model`,
+        t`rows`,
+        t`error [× noise]`,
+        ...channels.map((c) => titled(short(c), shown(unitOf(c)).unit)),
+      ]}
+    />
+  `;
 }

@@ -12,12 +12,28 @@ export function Table({ label, head, rows, numbers = [], labels = head }) {
   return html`
     <div class="scroll stacked" tabindex="0" role="region" aria-label=${label}>
       <table>
-        <thead><tr>${head.map((cell, k) => (cell === "" ? html`<td></td>` : html`<th scope="col" class=${kind(k)}>${cell}</th>`))}</tr></thead>
+        <thead>
+          <tr>
+            ${head.map((cell, k) =>
+              cell === "" ? html`<td></td>` : html`<th scope="col" class=${kind(k)}>${cell}</th>`,
+            )}
+          </tr>
+        </thead>
         <tbody>
-          ${rows.map((row) => html`<tr>${row.map((cell, k) => (k === 0
-            ? html`<th scope="row" class=${kind(k)}>${cell}</th>`
-            : html`<td class=${kind(k)} data-label=${labels[k]}>${cell}</td>`))}</tr>`)}
+          ${rows.map(
+            (row) =>
+              html`
+                <tr>
+                  ${row.map((cell, k) =>
+                    k === 0
+                      ? html`<th scope="row" class=${kind(k)}>${cell}</th>`
+                      : html`<td class=${kind(k)} data-label=${labels[k]}>${cell}</td>`,
+                  )}
+                </tr>
+              `,
+          )}
         </tbody>
       </table>
-    </div>`;
+    </div>
+  `;
 }

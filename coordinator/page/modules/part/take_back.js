@@ -1,4 +1,5 @@
-// Takes back what was added to a study: the study is as before, and the same addition brings it again without being computed anew.
+// Takes back what was added to a study: the study is as before, and the same addition brings it again without being
+// computed anew.
 
 import { html, useState } from "../html.js";
 import { withdraw } from "../rest/routes.js";
@@ -20,18 +21,30 @@ export function TakeBack({ study, id, reload }) {
       setFailure(error);
     }
   };
-  return html`<span class="take-back">${isAsked
-    ? html`<span>The study goes on without it, and without what followed from it.</span>
-      <button type="button" onClick=${take}>Take it back</button>
-      <button type="button" onClick=${() => setAsked(false)}>Keep it</button>`
-    : html`<button type="button" onClick=${() => setAsked(true)}>Take back</button>`}<${Failure} error=${failure} /></span>`;
+  return html`
+    <span class="take-back">
+      ${
+        isAsked
+          ? html`
+              <span>The study goes on without it, and without what followed from it.</span>
+              <button type="button" onClick=${take}>Take it back</button>
+              <button type="button" onClick=${() => setAsked(false)}>Keep it</button>
+            `
+          : html`<button type="button" onClick=${() => setAsked(true)}>Take back</button>`
+      }
+      <${Failure} error=${failure} />
+    </span>
+  `;
 }
 
 /** The calibration that added an effect to a model; null where none did. */
 export function additionOf(/** @type {any} */ study, /** @type {string[]} */ effects) {
-  const found = study.members.find((/** @type {any} */ m) => m.kind !== "search" && m.effects.length > 0 && m.effects.join(" ") === effects.join(" "));
+  const found = study.members.find(
+    (/** @type {any} */ m) => m.kind !== "search" && m.effects.length > 0 && m.effects.join(" ") === effects.join(" "),
+  );
   return found?.id ?? null;
 }
 
 /** Whether a model has something that the submitted one has not. */
-export const isAddition = (/** @type {any} */ study, /** @type {any} */ model) => model.effects.length > 0 && study.members[0].id !== model.id;
+export const isAddition = (/** @type {any} */ study, /** @type {any} */ model) =>
+  model.effects.length > 0 && study.members[0].id !== model.id;

@@ -9,12 +9,22 @@ import { Table } from "./table.js";
 export function WorkerTable({ workers }) {
   const rows = Object.entries(workers).map(([name, worker]) => [
     name,
-    worker.quarantined ? html`<span class="state failed">left out: ${worker.quarantined}</span>` : worker.holds > 0 ? t`computes ${worker.holds} evaluations` : t`waits for work`,
+    worker.quarantined
+      ? html`<span class="state failed">left out: ${worker.quarantined}</span>`
+      : worker.holds > 0
+        ? t`computes ${worker.holds} evaluations`
+        : t`waits for work`,
     worker.completed,
     worker.faults,
     ago(worker.silent_ms),
     worker.model_version,
   ]);
-  return html`<${Table} label="Workers" numbers=${[2, 3]} rows=${rows}
-    head=${[t`worker`, t`state`, t`evaluations done`, t`faults`, t`heard of`, t`version of the equations`]} />`;
+  return html`
+    <${Table}
+      label="Workers"
+      numbers=${[2, 3]}
+      rows=${rows}
+      head=${[t`worker`, t`state`, t`evaluations done`, t`faults`, t`heard of`, t`version of the equations`]}
+    />
+  `;
 }

@@ -18,7 +18,8 @@ export class AnswerError extends Error {
 }
 
 /** The coordinator is away, or the network is. */
-export const unreachable = () => new AnswerError(0, "unreachable", "the coordinator does not answer; the page goes on as soon as it does");
+export const unreachable = () =>
+  new AnswerError(0, "unreachable", "the coordinator does not answer; the page goes on as soon as it does");
 
 /** The answers that a report carries, by path; null on the page of a service. */
 const carried = (() => {
@@ -46,7 +47,12 @@ export async function request(method, path, { body, signal } = {}) {
   if (secret) headers.authorization = `Bearer ${secret}`;
   let response;
   try {
-    response = await fetch(path, { method, headers, signal, body: body === undefined ? undefined : JSON.stringify(body) });
+    response = await fetch(path, {
+      method,
+      headers,
+      signal,
+      body: body === undefined ? undefined : JSON.stringify(body),
+    });
   } catch (error) {
     if (signal?.aborted) throw error;
     throw unreachable();

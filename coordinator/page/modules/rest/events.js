@@ -9,7 +9,12 @@ export function split(/** @type {string} */ text) {
   const blocks = text.replaceAll("\r\n", "\n").split("\n\n");
   const rest = blocks.pop() ?? "";
   const events = blocks.flatMap((block) => {
-    const field = (/** @type {string} */ name) => block.split("\n").filter((line) => line.startsWith(`${name}:`)).map((line) => line.slice(name.length + 1).trim()).join("\n");
+    const field = (/** @type {string} */ name) =>
+      block
+        .split("\n")
+        .filter((line) => line.startsWith(`${name}:`))
+        .map((line) => line.slice(name.length + 1).trim())
+        .join("\n");
     return field("data") === "" ? [] : [{ event: field("event") || "message", data: JSON.parse(field("data")) }];
   });
   return { events, rest };
@@ -18,8 +23,8 @@ export function split(/** @type {string} */ text) {
 /**
  * Follows a stream until its calibration is over; EventSource sends no token, so the stream is fetched.
  * @param {string} path
- * @param {{ onEvent: (event: string, data: any) => void, onError: (error: any) => void, isOver: (event: string, data: any) => boolean }} listeners
- *   onError: null where the stream is open again
+ * @param {{ onEvent: (event: string, data: any) => void, onError: (error: any) => void, isOver: (event: string, data:
+ *   any) => boolean }} listeners onError: null where the stream is open again
  * @returns {() => void} ends it
  */
 export function follow(path, { onEvent, onError, isOver }) {

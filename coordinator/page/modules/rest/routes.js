@@ -47,16 +47,19 @@ export const extend = (/** @type {number} */ id, /** @type {Schemas["NewExtensio
 export const withdraw = (/** @type {number} */ id) => post(`${calibration(id)}/withdraw`);
 
 /** @returns {Promise<Schemas["StudyDetails"]>} */
-export const describe = (/** @type {number} */ id, /** @type {Schemas["StudyDetails"]} */ details) => post(`${study(id)}/details`, details);
+export const describe = (/** @type {number} */ id, /** @type {Schemas["StudyDetails"]} */ details) =>
+  post(`${study(id)}/details`, details);
 
 /** The report of a study as a file. @returns {Promise<Blob>} */
 export const reportOf = async (/** @type {number} */ id) => (await request("GET", `${calibration(id)}/report`)).blob();
 
 /** @returns {Promise<Schemas["Prediction"]>} */
-export const predict = (/** @type {number} */ id, /** @type {Partial<Schemas["NewPrediction"]>} */ asked) => post(`${calibration(id)}/predict`, asked);
+export const predict = (/** @type {number} */ id, /** @type {Partial<Schemas["NewPrediction"]>} */ asked) =>
+  post(`${calibration(id)}/predict`, asked);
 
 /** @returns {Promise<Schemas["DecisionAnswer"]>} */
-export const decide = (/** @type {number} */ id, /** @type {string} */ file) => post(`${calibration(id)}/decide`, { file });
+export const decide = (/** @type {number} */ id, /** @type {string} */ file) =>
+  post(`${calibration(id)}/decide`, { file });
 
 /** @returns {Promise<Schemas["Followed"]>} */
 export const followRuns = (/** @type {number} */ id, /** @type {string} */ runs) => post(path.campaign(id), { runs });
@@ -72,26 +75,35 @@ export const whatIf = (/** @type {number} */ id, /** @type {string[]} */ without
   post(`${calibration(id)}/what-if`, { without });
 
 /** @returns {Promise<Schemas["RunsAdded"]>} */
-export const addRuns = (/** @type {number} */ id, /** @type {string} */ runs, /** @type {number} */ calibration) => post(`${study(id)}/runs`, { runs, calibration });
+export const addRuns = (/** @type {number} */ id, /** @type {string} */ runs, /** @type {number} */ calibration) =>
+  post(`${study(id)}/runs`, { runs, calibration });
 
 /** @returns {Promise<Schemas["StudyArchived"]>} */
-export const archive = (/** @type {number} */ id, /** @type {"archive" | "restore"} */ verb) => post(`${study(id)}/${verb}`);
+export const archive = (/** @type {number} */ id, /** @type {"archive" | "restore"} */ verb) =>
+  post(`${study(id)}/${verb}`);
 
 /** @returns {Promise<Schemas["StudyDeleted"]>} */
 export const deleteStudy = (/** @type {number} */ id) => remove(study(id));
 
 /** @returns {Promise<Schemas["ExperimentCreated"]>} */
-export const addExperiment = (/** @type {Schemas["NewExperiment"]} */ experiment) => post("/v1/experiments", experiment);
+export const addExperiment = (/** @type {Schemas["NewExperiment"]} */ experiment) =>
+  post("/v1/experiments", experiment);
 
 /** @returns {Promise<Schemas["CalibrationCreated"]>} */
 export const submit = (/** @type {Schemas["NewCalibration"]} */ job) => post("/v1/calibrations", job);
 
-/** The files that a study was submitted with, as a draft. @returns {Promise<{ name: string, files: Record<string, string> }>} */
+/**
+ * The files that a study was submitted with, as a draft.
+ * @returns {Promise<{ name: string, files: Record<string, string> }>}
+ */
 export async function filesOfStudy(/** @type {string} */ id) {
   const { name, calibrations } = await get(study(Number(id)));
   const job = await get(path.job(calibrations[0]));
   const experiment = await get(path.experiment(job.experiment));
-  return { name, files: { "job.toml": job.toml, "experiment.toml": experiment.toml, ...experiment.files, ...job.files } };
+  return {
+    name,
+    files: { "job.toml": job.toml, "experiment.toml": experiment.toml, ...experiment.files, ...job.files },
+  };
 }
 
 /** @returns {Promise<Schemas["Guess"]>} */

@@ -1,4 +1,5 @@
-// An answer as the state of an element: asked once, asked again every so often where it changes, kept while it is asked again.
+// An answer as the state of an element: asked once, asked again every so often where it changes, kept while it is asked
+// again.
 
 import { useCallback, useEffect, useRef, useState } from "../html.js";
 import { get } from "./answers.js";

@@ -29,16 +29,40 @@ export function Compare({ study, model, query }) {
   const axis = axes.find((a) => a.key === key) ?? axes[0];
   const layers = [{ name: t`model`, colour: null, rows: comparison.rows }];
   return html`
-    <p class="note">Signs are measurements (hollow: held out, never fitted), lines the mean of the posterior at the measured conditions, bands its 90 % interval of a measurement; between conditions they bend smoothly, without being computed. Point at a run, or drag over a region: it lights up in every picture.</p>
+    <p class="note">
+      Signs are measurements (hollow: held out, never fitted), lines the mean of the posterior at the measured
+      conditions, bands its 90 % interval of a measurement; between conditions they bend smoothly, without being
+      computed. Point at a run, or drag over a region: it lights up in every picture.
+    </p>
     <${AxisPicker} axes=${axes} axis=${axis} choose=${choose} />
     <${ChannelCharts} layers=${layers} axis=${axis} name=${study.name} />
-    <${ParameterFold} model=${model} line=${study.ledger.find((/** @type {any} */ l) => l.calibration === model.id)} rows=${comparison.rows} axis=${axis} name=${study.name} />
-    ${histories?.length > 0 && html`<h2>Time histories</h2><div class="figures">${histories.map((/** @type {any} */ h) => html`<${HistoryChart} history=${h} name=${study.name} />`)}</div>`}
-    <${Folded} title="Table of all runs"><${RunTable} rows=${comparison.rows} /><//>`;
+    <${ParameterFold}
+      model=${model}
+      line=${study.ledger.find((/** @type {any} */ l) => l.calibration === model.id)}
+      rows=${comparison.rows}
+      axis=${axis}
+      name=${study.name}
+    />
+    ${
+      histories?.length > 0 &&
+      html`
+        <h2>Time histories</h2>
+        <div class="figures">
+          ${histories.map((/** @type {any} */ h) => html`<${HistoryChart} history=${h} name=${study.name} />`)}
+        </div>
+      `
+    }
+    <${Folded} title="Table of all runs"><${RunTable} rows=${comparison.rows} /><//>
+  `;
 }
 
 /** A part that is made when it is opened first: the table of a thousand runs has ten thousand cells. */
 function Folded(/** @type {{ title: string, children?: any }} */ { title, children }) {
   const [isOpen, setOpen] = useState(false);
-  return html`<details onToggle=${(/** @type {any} */ event) => event.target.open && setOpen(true)}><summary>${title}</summary>${isOpen && children}</details>`;
+  return html`
+    <details onToggle=${(/** @type {any} */ event) => event.target.open && setOpen(true)}>
+      <summary>${title}</summary>
+      ${isOpen && children}
+    </details>
+  `;
 }

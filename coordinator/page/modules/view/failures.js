@@ -34,40 +34,88 @@ export function Failures({ study, model }) {
   const [order, setOrder] = useState("slip");
   const [errors, setErrors] = useState(/** @type {"all" | "noise"} */ ("all"));
   const rows = useMemo(() => withPlace(comparison?.rows ?? []), [comparison]);
-  const ofChannel = useMemo(() => CHANNELS.map((channel) => ({ channel, own: rows.filter((r) => r.channel === channel) })).filter(({ own }) => own.length > 0), [rows]);
+  const ofChannel = useMemo(
+    () =>
+      CHANNELS.map((channel) => ({ channel, own: rows.filter((r) => r.channel === channel) })).filter(
+        ({ own }) => own.length > 0,
+      ),
+    [rows],
+  );
   if (!model) return html`<${NoModel} study=${study} />`;
   if (!comparison) return html`<${Pending} answer=${comparison} error=${error} what="the residuals" />`;
   const axes = varying(comparison.rows);
-  const orders = [...axes.map((a) => ({ key: a.key, title: a.title })), { key: "made", title: t`order of the runs` }, { key: "size", title: t`size of the residual` }];
+  const orders = [
+    ...axes.map((a) => ({ key: a.key, title: a.title })),
+    { key: "made", title: t`order of the runs` },
+    { key: "size", title: t`size of the residual` },
+  ];
   const axis = axes.find((a) => a.key === order) ?? MADE;
   const findings = diagnostics?.findings ?? [];
   return html`
     ${model.story && html`<div class="verdict"><${Clauses} text=${model.story.wrong.text} /></div>`}
     <div class="actions" role="group" aria-label="Ordered by">
       <span class="note">Ordered by</span>
-      ${orders.map((o) => html`<button type="button" aria-pressed=${o.key === order} onClick=${() => setOrder(o.key)}>${o.title}</button>`)}
+      ${orders.map(
+        (o) =>
+          html`
+            <button type="button" aria-pressed=${o.key === order} onClick=${() => setOrder(o.key)}>${o.title}</button>
+          `,
+      )}
     </div>
-    ${hasErrorsBesideNoise(rows) && html`
-      <div class="actions" role="group" aria-label=${t`Errors that residuals count in`}>
-        <span class="note">${t`Errors that residuals count in`}</span>
-        ${ERRORS.map(({ key, words }) => html`
-          <button type="button" aria-pressed=${key === errors} onClick=${() => setErrors(key)}>${words}</button>`)}
-      </div>`}
+    ${
+      hasErrorsBesideNoise(rows) &&
+      html`
+        <div class="actions" role="group" aria-label=${t`Errors that residuals count in`}>
+          <span class="note">${t`Errors that residuals count in`}</span>
+          ${ERRORS.map(
+            ({ key, words }) => html`
+              <button type="button" aria-pressed=${key === errors} onClick=${() => setErrors(key)}>${words}</button>
+            `,
+          )}
+        </div>
+      `
+    }
     <${HeatMap} rows=${rows} order=${order} errors=${errors} name=${study.name} />
     <h2>Residuals against ${axis.title}</h2>
-    <p class="note">${errors === "all"
-      ? t`Measured less computed; the grey band is one sd, the mean over the runs, of all errors that the calibration assumes or infers: noise, scatter of the soil and discrepancy, as in the diagnosis.`
-      : t`Measured less computed; the grey band is one sd, the mean over the runs, of the noise alone.`}
-      ${" "}${t`The line is the trend that the diagnosis tests, where it is beyond chance (p below 0.01 among all tests).`}</p>
+    <p class="note">
+      ${
+        errors === "all"
+          ? t`Measured less computed; the grey band is one sd, the mean over the runs, of all errors that the
+            calibration assumes or infers: noise, scatter of the soil and discrepancy, as in the diagnosis.`
+          : t`Measured less computed; the grey band is one sd, the mean over the runs, of the noise alone.`
+      }${" "}
+      ${t`The line is the trend that the diagnosis tests, where it is beyond chance (p below 0.01 among all tests).`}
+    </p>
     <div class="figures">
-      ${ofChannel.map(({ channel, own }) => html`
-        <${ResidualChart} key=${channel} channel=${channel} rows=${own} axis=${axis} errors=${errors} trends=${diagnostics?.trends ?? []} name=${study.name} />`)}
+      ${ofChannel.map(
+        ({ channel, own }) => html`
+          <${ResidualChart}
+            key=${channel}
+            channel=${channel}
+            rows=${own}
+            axis=${axis}
+            errors=${errors}
+            trends=${diagnostics?.trends ?? []}
+            name=${study.name}
+          />
+        `,
+      )}
     </div>
-    ${findings.length > 0 && html`<h2>What the diagnosis says</h2><ul>${findings.map((/** @type {string} */ text) => html`<li>${capital(raised(text))}</li>`)}</ul>`}`;
+    ${
+      findings.length > 0 &&
+      html`
+        <h2>What the diagnosis says</h2>
+        <ul>${findings.map((/** @type {string} */ text) => html`<li>${capital(raised(text))}</li>`)}</ul>
+      `
+    }
+  `;
 }
 
 /** @type {{ key: "all" | "noise", words: string }[]} the errors that residuals may count in */
-const ERRORS = [{ key: "all", words: t`all errors` }, { key: "noise", words: t`the noise alone` }];
+const ERRORS = [
+  { key: "all", words: t`all errors` },
+  { key: "noise", words: t`the noise alone` },
+];
 
 /** The order in which the runs stand in the file. */
 const MADE = { key: "place", title: t`order of the runs`, short: t`runs`, unit: "1", scale: 1 };
@@ -78,44 +126,115 @@ function withPlace(/** @type {any[]} */ rows) {
   return rows.map((r) => ({ ...r, place: places.get(r.run) }));
 }
 
-/** Runs by channels, coloured by the residual over its sd. */
-function HeatMap(/** @type {{ rows: any[], order: string, errors: "all" | "noise", name: string }} */ { rows, order, errors, name }) {
-  const judged = rows.map((r) => ({ ...r, sds: residualSds(r, errors), all_sds: residualSds(r, "all") })).filter((r) => r.sds !== null);
+/**
+ * Runs by channels, coloured by the residual over its sd.
+ * @param {{ rows: any[], order: string, errors: "all" | "noise", name: string }} properties
+ */
+function HeatMap({ rows, order, errors, name }) {
+  const judged = rows
+    .map((r) => ({ ...r, sds: residualSds(r, errors), all_sds: residualSds(r, "all") }))
+    .filter((r) => r.sds !== null);
   /** @type {Map<string, number>} */
   const worst = new Map();
   for (const r of judged) worst.set(r.run, Math.max(worst.get(r.run) ?? 0, Math.abs(r.sds)));
   const first = new Map(rows.map((r) => [r.run, r]));
   const runs = [...new Set(judged.map((r) => r.run))];
-  const value = (/** @type {string} */ run) => (order === "size" ? -(worst.get(run) ?? 0) : order === "made" ? first.get(run).place : first.get(run)[order]);
+  const value = (/** @type {string} */ run) =>
+    order === "size" ? -(worst.get(run) ?? 0) : order === "made" ? first.get(run).place : first.get(run)[order];
   const values = new Map(runs.map((run) => [run, value(run)]));
   runs.sort((a, b) => values.get(a) - values.get(b) || first.get(a).place - first.get(b).place);
-  const hint = (/** @type {any} */ r) => [runName(r), short(r.channel)].join(", ") + `\n${conditionWords(r)}\n` + (r.sds > 0 ? t`${minus(r.all_sds.toFixed(1))} sds of all errors, ${minus(r.residual_sigma.toFixed(1))} of the noise alone: measured above computed` : t`${minus(r.all_sds.toFixed(1))} sds of all errors, ${minus(r.residual_sigma.toFixed(1))} of the noise alone: measured below computed`);
+  const hint = (/** @type {any} */ r) =>
+    [runName(r), short(r.channel)].join(", ") +
+    `\n${conditionWords(r)}\n` +
+    (r.sds > 0
+      ? t`${minus(r.all_sds.toFixed(1))} sds of all errors, ${minus(r.residual_sigma.toFixed(1))} of the noise alone:
+        measured above computed`
+      : t`${minus(r.all_sds.toFixed(1))} sds of all errors, ${minus(r.residual_sigma.toFixed(1))} of the noise alone:
+        measured below computed`);
   const isMany = judged.length > MANY;
   const held = judged.filter((r) => r.use === "holdout");
   const heldLook = { x: "run", y: "channel", fill: "var(--ink)", className: "held" };
   // In a picture of many cells, all cells of one colour step are one element.
-  const fill = isMany ? (/** @type {any} */ r) => Math.round(STEPS * Math.max(-MOST_SDS, Math.min(MOST_SDS, r.sds))) / STEPS : "sds";
+  const fill = isMany
+    ? (/** @type {any} */ r) => Math.round(STEPS * Math.max(-MOST_SDS, Math.min(MOST_SDS, r.sds))) / STEPS
+    : "sds";
   const isNamed = (/** @type {number} */ width) => (width - 112) / runs.length >= LEAST_CELL;
-  const below = (/** @type {number} */ width) => (isNamed(width) ? 24 + CHARACTER * Math.max(...runs.map((run) => run.length)) : 26);
-  const draw = (/** @type {number} */ width) => Plot.plot({
-    width, height: 30 + below(width) + 30 * new Set(judged.map((r) => r.channel)).size, marginLeft: 92, marginBottom: below(width), style: STYLE,
-    x: { domain: runs, label: isNamed(width) ? null : t`runs`, tickRotate: -60, tickSize: 0, ...(isNamed(width) ? {} : { ticks: [] }) },
-    y: { domain: CHANNELS.filter((c) => judged.some((r) => r.channel === c)), label: null, tickFormat: short, tickSize: 0 },
-    color: { type: "linear", domain: [-MOST_SDS, 0, MOST_SDS], range: RESIDUAL_RANGE, clamp: true, interpolate: /** @type {any} */ (mix) },
-    marks: [
-      Plot.cell(judged, byRun(judged, { x: "run", y: "channel", fill, inset: runs.length > 200 ? 0 : 0.5 }, isMany)),
-      Plot.dot(held, isMany ? byRun(held, { ...heldLook, r: 1 }, true) : { ...heldLook, r: isNamed(width) ? 2 : 1 }),
-      // The words are made of the run that is pointed at alone.
-      Plot.tip(judged, Plot.pointer({
-        x: "run", y: "channel", title: (/** @type {any} */ r) => r, format: { title: hint }, fill: "var(--panel)", stroke: "var(--rule)",
-      })),
-    ],
-  });
-  return html`<${Figure} title=${errors === "all" ? t`Residuals of every run and channel, in sds of noise, scatter of the soil and discrepancy` : t`Residuals of every run and channel, in sds of the noise alone`}
-    name=${fileName(name, "residuals")} deps=${[rows, order, errors]} draw=${draw}
-    rows=${() => judged.map((r) => ({ run: r.run, use: r.use, channel: r.channel, slip: r.slip, wheel_load_n: r.wheel_load_n, sled_speed_m_s: r.sled_speed_m_s, residual_sds: r.all_sds, residual_noise_sds: r.residual_sigma }))}
-    onDrawn=${(/** @type {any} */ plot) => pointable(plot)}
-    legend=${html`<span><i class="swatch below"></i>computed too high by ${MOST_SDS} sds or more</span><span><i class="swatch level"></i>as measured</span><span><i class="swatch above"></i>computed too low</span><span>dot: held out</span>`} />`;
+  const below = (/** @type {number} */ width) =>
+    isNamed(width) ? 24 + CHARACTER * Math.max(...runs.map((run) => run.length)) : 26;
+  const draw = (/** @type {number} */ width) =>
+    Plot.plot({
+      width,
+      height: 30 + below(width) + 30 * new Set(judged.map((r) => r.channel)).size,
+      marginLeft: 92,
+      marginBottom: below(width),
+      style: STYLE,
+      x: {
+        domain: runs,
+        label: isNamed(width) ? null : t`runs`,
+        tickRotate: -60,
+        tickSize: 0,
+        ...(isNamed(width) ? {} : { ticks: [] }),
+      },
+      y: {
+        domain: CHANNELS.filter((c) => judged.some((r) => r.channel === c)),
+        label: null,
+        tickFormat: short,
+        tickSize: 0,
+      },
+      color: {
+        type: "linear",
+        domain: [-MOST_SDS, 0, MOST_SDS],
+        range: RESIDUAL_RANGE,
+        clamp: true,
+        interpolate: /** @type {any} */ (mix),
+      },
+      marks: [
+        Plot.cell(judged, byRun(judged, { x: "run", y: "channel", fill, inset: runs.length > 200 ? 0 : 0.5 }, isMany)),
+        Plot.dot(held, isMany ? byRun(held, { ...heldLook, r: 1 }, true) : { ...heldLook, r: isNamed(width) ? 2 : 1 }),
+        // The words are made of the run that is pointed at alone.
+        Plot.tip(
+          judged,
+          Plot.pointer({
+            x: "run",
+            y: "channel",
+            title: (/** @type {any} */ r) => r,
+            format: { title: hint },
+            fill: "var(--panel)",
+            stroke: "var(--rule)",
+          }),
+        ),
+      ],
+    });
+  return html`
+    <${Figure}
+      title=${
+        errors === "all"
+          ? t`Residuals of every run and channel, in sds of noise, scatter of the soil and discrepancy`
+          : t`Residuals of every run and channel, in sds of the noise alone`
+      }
+      name=${fileName(name, "residuals")}
+      deps=${[rows, order, errors]}
+      draw=${draw}
+      rows=${() =>
+        judged.map((r) => ({
+          run: r.run,
+          use: r.use,
+          channel: r.channel,
+          slip: r.slip,
+          wheel_load_n: r.wheel_load_n,
+          sled_speed_m_s: r.sled_speed_m_s,
+          residual_sds: r.all_sds,
+          residual_noise_sds: r.residual_sigma,
+        }))}
+      onDrawn=${(/** @type {any} */ plot) => pointable(plot)}
+      legend=${html`
+        <span><i class="swatch below"></i>computed too high by ${MOST_SDS} sds or more</span>
+        <span><i class="swatch level"></i>as measured</span>
+        <span><i class="swatch above"></i>computed too low</span>
+        <span>dot: held out</span>
+      `}
+    />
+  `;
 }
 
 /** Mixes two colours of the style sheet. */

@@ -14,21 +14,37 @@ const isAtWork = (/** @type {any[]} */ studies) => studies.some(({ state }) => [
 
 export function Home() {
   const [isArchive, setArchive] = useState(false);
-  const studies = useAnswer(isArchive ? path.allStudies : path.studies, { everyMs: (now) => (isAtWork(now) ? LOOK_MS : REST_MS) });
+  const studies = useAnswer(isArchive ? path.allStudies : path.studies, {
+    everyMs: (now) => (isAtWork(now) ? LOOK_MS : REST_MS),
+  });
   const workers = useAnswer(path.workers, { everyMs: () => LOOK_MS });
   return html`
     <div class="actions heading">
       <h1>Studies</h1>
       <a class="button main" href="#/new">New calibration</a>
     </div>
-    ${studies.answer
-      ? html`<${Failure} error=${studies.error} /><${Studies} studies=${studies.answer} />`
-      : html`<${Pending} answer=${studies.answer} error=${studies.error} what="The list of studies" />`}
-    <p class="note"><label><input type="checkbox" checked=${isArchive} onChange=${(/** @type {any} */ e) => setArchive(e.target.checked)} /> archived studies, too</label></p>
+    ${
+      studies.answer
+        ? html`<${Failure} error=${studies.error} /><${Studies} studies=${studies.answer} />`
+        : html`<${Pending} answer=${studies.answer} error=${studies.error} what="The list of studies" />`
+    }
+    <p class="note">
+      <label>
+        <input
+          type="checkbox"
+          checked=${isArchive}
+          onChange=${(/** @type {any} */ e) => setArchive(e.target.checked)}
+        /> archived
+        studies, too
+      </label>
+    </p>
     <h2>Workers</h2>
-    ${workers.answer
-      ? html`<${Workers} workers=${workers.answer} />`
-      : html`<${Pending} answer=${workers.answer} error=${workers.error} what="The list of workers" />`}`;
+    ${
+      workers.answer
+        ? html`<${Workers} workers=${workers.answer} />`
+        : html`<${Pending} answer=${workers.answer} error=${workers.error} what="The list of workers" />`
+    }
+  `;
 }
 
 function Studies(/** @type {{ studies: any[] }} */ { studies }) {
@@ -36,13 +52,24 @@ function Studies(/** @type {{ studies: any[] }} */ { studies }) {
   return html`
     <div class="card">
       <h2>There is no study yet</h2>
-      <p>A study calibrates a wheel–soil model against the runs of a test rig, shows where the model fails and says which effect it misses.</p>
-      <p><a href="#/new">Drop the files of a calibration</a> (job.toml, experiment.toml, runs.csv), or a table of measurements alone,
-        or <a href="#/new?example=hidden-effect">start the example</a>, which takes a few seconds.</p>
-    </div>`;
+      <p>
+        A study calibrates a wheel–soil model against the runs of a test rig, shows where the model fails and says which
+        effect it misses.
+      </p>
+      <p>
+        <a href="#/new">Drop the files of a calibration</a> (job.toml, experiment.toml, runs.csv), or a table of
+        measurements alone, or <a href="#/new?example=hidden-effect">start the example</a>, which takes a few seconds.
+      </p>
+    </div>
+  `;
 }
 
 function Workers(/** @type {{ workers: Record<string, any> }} */ { workers }) {
   if (Object.keys(workers).length > 0) return html`<${WorkerTable} workers=${workers} />`;
-  return html`<${Empty}>No worker computes for this service. Start one on any machine that reaches it: <code>worker --coordinator ${location.origin}</code><//>`;
+  return html`
+    <${Empty}>
+      No worker computes for this service. Start one on any machine that reaches
+      it: <code>worker --coordinator ${location.origin}</code>
+    <//>
+  `;
 }

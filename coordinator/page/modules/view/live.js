@@ -1,4 +1,5 @@
-// How the sampler of a study comes to its result: state, stages, particles; it goes on after a restart of the coordinator.
+// How the sampler of a study comes to its result: state, stages, particles; it goes on after a restart of the
+// coordinator.
 
 import { html, useEffect, useRef, useState } from "../html.js";
 import { t, translated } from "../language/language.js";
@@ -32,7 +33,13 @@ const KINDS = { sample: t`calibration`, fit: t`fit`, search: t`search for a miss
 /** The member that is shown: the one that the address names, or the one that works, or the last calibration. */
 function memberOf(/** @type {any} */ study, /** @type {string | undefined} */ asked) {
   const of = (/** @type {(m: any) => boolean} */ test) => study.members.findLast(test);
-  return of((m) => String(m.id) === asked) ?? of((m) => m.state === "running") ?? of((m) => ["paused", "queued"].includes(m.state)) ?? of((m) => m.kind !== "search") ?? study.members.at(-1);
+  return (
+    of((m) => String(m.id) === asked) ??
+    of((m) => m.state === "running") ??
+    of((m) => ["paused", "queued"].includes(m.state)) ??
+    of((m) => m.kind !== "search") ??
+    study.members.at(-1)
+  );
 }
 
 /** @param {{ study: any, model: any, query: Record<string, string>, reload: () => void }} properties */
@@ -43,25 +50,70 @@ export function Live({ study, model, query, reload }) {
   const followable = member.kind === "sample" && member.state === "finished" ? member : model;
   const go = (/** @type {number} */ id) => replace(address(["studies", study.id, "live"], { member: id }));
   const names = study.members.map((/** @type {any} */ m) => [
-    isReport ? m.name : html`<button type="button" aria-pressed=${m.id === member.id} onClick=${() => go(m.id)}>${m.name}</button>`,
+    isReport
+      ? m.name
+      : html`<button type="button" aria-pressed=${m.id === member.id} onClick=${() => go(m.id)}>${m.name}</button>`,
     KINDS[/** @type {keyof typeof KINDS} */ (m.kind)] ?? words(m.kind),
     html`<span class=${`state ${m.state}`}>${translated(m.state)}</span>`,
     m.message ?? "",
   ]);
   return html`
-    ${!isReport && FINAL.includes(study.state) && html`<p class="actions"><span>Everything in this study is over.</span> <a class="button main" href=${address(["studies", study.id, "story"])}>Read the story</a></p>`}
+    ${
+      !isReport &&
+      FINAL.includes(study.state) &&
+      html`
+        <p class="actions">
+          <span>Everything in this study is over.</span>${" "}
+          <a class="button main" href=${address(["studies", study.id, "story"])}>Read the story</a>
+        </p>
+      `
+    }
     <${Member} key=${member.id} member=${member} reload=${reload} />
-    ${!isReport && isAddition(study, member) && member.kind !== "search" && html`<p><${TakeBack} study=${study} id=${member.id} reload=${reload} /></p>`}
+    ${
+      !isReport &&
+      isAddition(study, member) &&
+      member.kind !== "search" &&
+      html`<p><${TakeBack} study=${study} id=${member.id} reload=${reload} /></p>`
+    }
     ${!isReport && !FINAL.includes(study.state) && html`<${Farm} />`}
-    ${!isReport && FINAL.includes(study.state) && followable && html`<${Later} key=${`campaign ${followable.id}`} title=${t`The campaign`} load=${campaign} study=${study} model=${followable} reload=${reload} />`}
+    ${
+      !isReport &&
+      FINAL.includes(study.state) &&
+      followable &&
+      html`
+        <${Later}
+          key=${`campaign ${followable.id}`}
+          title=${t`The campaign`}
+          load=${campaign}
+          study=${study}
+          model=${followable}
+          reload=${reload}
+        />
+      `
+    }
     <h2>Everything in this study</h2>
-    <${Table} label="Calibrations and searches of the study" head=${[t`name`, t`what`, t`state`, t`message`]} rows=${names} />`;
+    <${Table}
+      label="Calibrations and searches of the study"
+      head=${[t`name`, t`what`, t`state`, t`message`]}
+      rows=${names}
+    />
+  `;
 }
 
 /** The workers of the farm, while they are at work on this study. */
 function Farm() {
   const { answer: workers } = useAnswer(path.workers, { everyMs: () => FARM_MS });
-  return workers && html`<h2>Workers</h2>${Object.keys(workers).length > 0 ? html`<${WorkerTable} workers=${workers} />` : html`<p class="empty">No worker computes for this service: start one.</p>`}`;
+  return (
+    workers &&
+    html`
+      <h2>Workers</h2>
+      ${
+        Object.keys(workers).length > 0
+          ? html`<${WorkerTable} workers=${workers} />`
+          : html`<p class="empty">No worker computes for this service: start one.</p>`
+      }
+    `
+  );
 }
 
 function Member(/** @type {{ member: any, reload: () => void }} */ { member, reload }) {
@@ -76,7 +128,10 @@ function Member(/** @type {{ member: any, reload: () => void }} */ { member, rel
       onEvent(event, data) {
         if (event === "status") setStatus(data);
         // A stream that is opened again begins with the first stage.
-        else setLive((/** @type {any[]} */ before) => [...before.filter((s) => s.stage !== data.stage), data].sort((a, b) => a.stage - b.stage));
+        else
+          setLive((/** @type {any[]} */ before) =>
+            [...before.filter((s) => s.stage !== data.stage), data].sort((a, b) => a.stage - b.stage),
+          );
       },
       onError: setFailure,
       isOver: (event, data) => event === "status" && FINAL.includes(data.state),
@@ -84,34 +139,93 @@ function Member(/** @type {{ member: any, reload: () => void }} */ { member, rel
   }, [member.id, isOver]);
   const stages = recorded.answer ?? live;
   const isLoading = isOver && recorded.answer === null;
-  const state = isOver ? member.state : status?.state ?? member.state;
+  const state = isOver ? member.state : (status?.state ?? member.state);
   const progress = isOver ? null : status?.progress;
   const share = progress?.share ?? null;
   const seen = useRef(/** @type {{ share: number, ms: number } | null} */ (null));
   if (share !== null) seen.current ??= { share, ms: Date.now() };
   return html`
     <h2>${member.name}</h2>
-    <p aria-live="polite"><span class=${`state ${state}`}>${translated(state)}</span>${progress ? `: ${progressWords(progress)}` : ""}
-      ${progress && html` <span class="note">${Math.round(progress.evaluations_per_s)} evaluations/s; ${progress.rejected} rejected by the model</span>`}</p>
-    ${share !== null && html`<p class="whole-share"><label>Whole <progress max="1" value=${share}></progress> ${share < MOST_SHARE ? t`about ${Math.round(100 * share)} %` : t`the end cannot be estimated yet`}</label>
-      ${share < MOST_SHARE && progress.remaining_s === null && seen.current && html` <span class="note">${toGo(share, seen.current, Date.now())}</span>`}</p>`}
-    ${progress && html`<p><label>Present step <progress max=${Math.max(1, progress.step_size)} value=${progress.step_done}></progress> ${percentage(progress.step_done, progress.step_size)}${" "}
-      <span class="note">(${progress.step_done} of ${progress.step_size} evaluations)</span></label></p>`}
+    <p aria-live="polite">
+      <span class=${`state ${state}`}>${translated(state)}</span>
+      ${progress ? `: ${progressWords(progress)}` : ""}
+      ${
+        progress &&
+        html`
+          ${" "}
+          <span class="note">
+            ${Math.round(progress.evaluations_per_s)} evaluations/s; ${progress.rejected} rejected by the model
+          </span>
+        `
+      }
+    </p>
+    ${
+      share !== null &&
+      html`
+        <p class="whole-share">
+          <label>
+            Whole <progress max="1" value=${share}></progress>${" "}
+            ${share < MOST_SHARE ? t`about ${Math.round(100 * share)} %` : t`the end cannot be estimated yet`}
+          </label>
+          ${
+            share < MOST_SHARE &&
+            progress.remaining_s === null &&
+            seen.current &&
+            html`
+              ${" "}
+              <span class="note">${toGo(share, seen.current, Date.now())}</span>
+            `
+          }
+        </p>
+      `
+    }
+    ${
+      progress &&
+      html`
+        <p>
+          <label>
+            Present step <progress max=${Math.max(1, progress.step_size)} value=${progress.step_done}></progress>${" "}
+            ${percentage(progress.step_done, progress.step_size)}${" "}
+            <span class="note">(${progress.step_done} of ${progress.step_size} evaluations)</span>
+          </label>
+        </p>
+      `
+    }
     <${Failure} error=${failure} />
-    ${!isReport && !isOver && !FINAL.includes(state) && html`<${Controls} id=${member.id} state=${state} reload=${reload} />`}
-    ${member.kind === "search"
-      ? html`${progress?.search && html`<${Leaders} search=${progress.search} />`}<p class="note">A search fits each candidate effect; its result is in the view Missing effect.</p>`
-      : stages.length > 0
-        ? html`<${StageCharts} stages=${stages} name=${member.name} /><${isReport ? RecordedParticles : Particles} id=${member.id} stages=${stages} />`
-        : html`<p class="empty" aria-busy=${isLoading}>${noStages(member, isOver, isLoading)}</p>`}`;
+    ${
+      !isReport &&
+      !isOver &&
+      !FINAL.includes(state) &&
+      html`<${Controls} id=${member.id} state=${state} reload=${reload} />`
+    }
+    ${
+      member.kind === "search"
+        ? html`
+            ${progress?.search && html`<${Leaders} search=${progress.search} />`}
+            <p class="note">A search fits each candidate effect; its result is in the view Missing effect.</p>
+          `
+        : stages.length > 0
+          ? html`
+              <${StageCharts} stages=${stages} name=${member.name} />
+              <${isReport ? RecordedParticles : Particles} id=${member.id} stages=${stages} />
+            `
+          : html`<p class="empty" aria-busy=${isLoading}>${noStages(member, isOver, isLoading)}</p>`
+    }
+  `;
 }
 
 /** `45 %` of a step. */
-const percentage = (/** @type {number} */ done, /** @type {number} */ size) => `${size > 0 ? Math.round((100 * done) / size) : 0} %`;
+const percentage = (/** @type {number} */ done, /** @type {number} */ size) =>
+  `${size > 0 ? Math.round((100 * done) / size) : 0} %`;
 
 /** Why a calibration shows no stages. */
 function noStages(/** @type {any} */ member, /** @type {boolean} */ isOver, /** @type {boolean} */ isLoading) {
   if (isLoading) return t`Loading the stages …`;
-  if (member.kind === "fit") return isOver ? t`A fit goes from step to step and has no stages; its result is in the other views.` : t`A fit goes from step to step; its result comes with its end.`;
-  return isOver ? t`The calibration ended before its first stage.` : t`The first stage draws from the prior; pictures come with its end.`;
+  if (member.kind === "fit")
+    return isOver
+      ? t`A fit goes from step to step and has no stages; its result is in the other views.`
+      : t`A fit goes from step to step; its result comes with its end.`;
+  return isOver
+    ? t`The calibration ended before its first stage.`
+    : t`The first stage draws from the prior; pictures come with its end.`;
 }

@@ -1,4 +1,5 @@
-// What is missing: the explanations with their probabilities, what each would change, what was not tried, and which runs would tell.
+// What is missing: the explanations with their probabilities, what each would change, what was not tried, and which
+// runs would tell.
 
 import { html, useMemo, useState } from "../html.js";
 import { varying } from "../chart/condition.js";
@@ -20,7 +21,10 @@ import { benchTest } from "../words/bench_test.js";
 import { byChange, withGhost, withoutChange } from "../words/ghost.js";
 import { capital } from "../words/quantity.js";
 
-/** @param {{ study: any, model: any, query: Record<string, string>, reload?: () => void }} properties query.effect: whose curves are kept over the data */
+/**
+ * @param {{ study: any, model: any, query: Record<string, string>, reload?: () => void }} properties query.effect:
+ *   whose curves are kept over the data
+ */
 export function MissingEffect({ study, model, query, reload }) {
   const searches = study.members.filter((/** @type {any} */ m) => m.kind === "search" && m.searches === model?.id);
   const search = searches.findLast((/** @type {any} */ m) => m.state === "finished") ?? searches.at(-1);
@@ -54,12 +58,37 @@ export function MissingEffect({ study, model, query, reload }) {
   };
   if (!search || isLost) {
     return html`
-      <p>${isLost ? t`The search is ${translated(search.state)}${search.message ? `: ${search.message}` : ""}.` : t`Nobody has asked yet what this model is missing.`}</p>
-      ${isReport ? html`<p>Ask, in the folder of this report, with <code>coordinator discover ${model.id} --out .</code></p>`
-        : html`<button class="main" type="button" disabled=${isBusy} onClick=${() => act(() => discover(model.id))}>Search for the missing effect</button>`}
-      <${Failure} error=${failure} />`;
+      <p>
+        ${
+          isLost
+            ? t`The search is ${translated(search.state)}${search.message ? `: ${search.message}` : ""}.`
+            : t`Nobody has asked yet what this model is missing.`
+        }
+      </p>
+      ${
+        isReport
+          ? html`<p>Ask, in the folder of this report, with <code>coordinator discover ${model.id} --out .</code></p>`
+          : html`
+              <button class="main" type="button" disabled=${isBusy} onClick=${() => act(() => discover(model.id))}>
+                Search for the missing effect
+              </button>
+            `
+      }
+      <${Failure} error=${failure} />
+    `;
   }
-  if (!isFound) return html`<p class="empty">The search is ${translated(search.state)}${search.message ? `: ${search.message}` : ""}; <a href=${address(["studies", study.id, "live"])}>Live</a> shows how far it is.</p>`;
+  if (!isFound)
+    return html`
+      <p class="empty">
+        The search
+        is ${translated(search.state)}${search.message ? `: ${search.message}` : ""}; <a
+          href=${address(["studies", study.id, "live"])}
+        >
+          Live
+        </a> shows
+        how far it is.
+      </p>
+    `;
   if (!record) return html`<${Pending} answer=${record} error=${error} what="the search" />`;
   const add = (/** @type {any} */ extension) => act(() => extend(model.id, extension));
   const layers = comparison ? withGhost(comparison.rows, record.curves, ghost) : [];
@@ -68,24 +97,88 @@ export function MissingEffect({ study, model, query, reload }) {
     <${Failure} error=${failure} />
     <div class="beside">
       <div>
-        <${Explanations} record=${record} unchanged=${unchanged} ghost=${ghost} kept=${kept} show=${setPointed} keep=${keep} add=${isReport ? null : add} study=${study} model=${model} isBusy=${isBusy} reload=${reload} />
+        <${Explanations}
+          record=${record}
+          unchanged=${unchanged}
+          ghost=${ghost}
+          kept=${kept}
+          show=${setPointed}
+          keep=${keep}
+          add=${isReport ? null : add}
+          study=${study}
+          model=${model}
+          isBusy=${isBusy}
+          reload=${reload}
+        />
       </div>
       <div class="ghosts">
-        <p class="note" aria-live="polite">${ghost ? html`Dashed: what <b>${OTHERS[ghost] ?? ghost}</b> would predict for the fitted runs, from the search's fit. Nothing has been computed anew.` : t`Point at an explanation: its predictions appear over the data before anything is computed; a click on its name keeps them.`}</p>
-        ${comparison && html`<${ChannelCharts} small=${true} isLow=${true} order=${byChange(comparison.rows, record.curves, ghost)} layers=${layers} axis=${varying(comparison.rows)[0]} name=${`${study.name}-ghost`} />`}
+        <p class="note" aria-live="polite">
+          ${
+            ghost
+              ? html`
+                  Dashed: what <b>${OTHERS[ghost] ?? ghost}</b> would predict for the fitted runs, from the search's
+                  fit. Nothing has been computed anew.
+                `
+              : t`Point at an explanation: its predictions appear over the data before anything is computed; a click on
+                its name keeps them.`
+          }
+        </p>
+        ${
+          comparison &&
+          html`
+            <${ChannelCharts}
+              small=${true}
+              isLow=${true}
+              order=${byChange(comparison.rows, record.curves, ghost)}
+              layers=${layers}
+              axis=${varying(comparison.rows)[0]}
+              name=${`${study.name}-ghost`}
+            />
+          `
+        }
       </div>
     </div>
-    ${record.outside && html`<${LawChart} law=${record.outside} name=${study.name} add=${isReport ? null : () => add({ effect_file: { name: "outside.toml", text: record.outside.effect_file } })} />`}
+    ${
+      record.outside &&
+      html`
+        <${LawChart}
+          law=${record.outside}
+          name=${study.name}
+          add=${
+            isReport ? null : () => add({ effect_file: { name: "outside.toml", text: record.outside.effect_file } })
+          }
+        />
+      `
+    }
     <${NotTried} record=${record} />
     <h2>Which runs would tell</h2>
-    ${record.next_runs.length === 0 && html`<p>No run within reach of the rig would change these probabilities by much.</p>`}
+    ${
+      record.next_runs.length === 0 &&
+      html`<p>No run within reach of the rig would change these probabilities by much.</p>`
+    }
     <${InformationMap} record=${record} name=${study.name} />
-    ${record.other_tests.length > 0 && html`<h3>Tests without a rolling wheel that would tell</h3><ul>${record.other_tests.map((/** @type {string} */ text) => html`<${BenchTest} text=${text} />`)}</ul>`}
-    ${!isReport && comparison && html`<${NewRuns} study=${study} model=${model} record=${record} comparison=${comparison} reload=${reload} />`}`;
+    ${
+      record.other_tests.length > 0 &&
+      html`
+        <h3>Tests without a rolling wheel that would tell</h3>
+        <ul>${record.other_tests.map((/** @type {string} */ text) => html`<${BenchTest} text=${text} />`)}</ul>
+      `
+    }
+    ${
+      !isReport &&
+      comparison &&
+      html`<${NewRuns} study=${study} model=${model} record=${record} comparison=${comparison} reload=${reload} />`
+    }
+  `;
 }
 
 /** A test without a rolling wheel; where its result is stated in the files is folded. */
 function BenchTest(/** @type {{ text: string }} */ { text }) {
   const { what, place } = benchTest(text);
-  return html`<li>${capital(what)} ${place && html`<details><summary>In detail</summary><span class="note">${place}</span></details>`}</li>`;
+  return html`
+    <li>
+      ${capital(what)}${" "}
+      ${place && html`<details><summary>In detail</summary><span class="note">${place}</span></details>`}
+    </li>
+  `;
 }

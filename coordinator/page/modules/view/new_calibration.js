@@ -42,7 +42,7 @@ export function NewCalibration({ query }) {
   const examples = useAnswer(path.examples);
   const kinds = Object.fromEntries(Object.entries(files).map(([own, text]) => [own, kindOf(own, text)]));
   const of = (/** @type {string} */ kind) => Object.keys(files).filter((own) => kinds[own] === kind);
-  const job = asked !== null && asked in files ? asked : of("job")[0] ?? null;
+  const job = asked !== null && asked in files ? asked : (of("job")[0] ?? null);
   const experiment = job === null ? null : experimentOf(files, job);
   const draft = useRef({ files, job });
   draft.current = { files, job };
@@ -53,7 +53,8 @@ export function NewCalibration({ query }) {
     setBegun(null);
   };
   const add = (/** @type {Files} */ more) => change({ ...files, ...more });
-  const without = (/** @type {any} */ all, /** @type {string} */ own) => Object.fromEntries(Object.entries(all).filter(([key]) => key !== own));
+  const without = (/** @type {any} */ all, /** @type {string} */ own) =>
+    Object.fromEntries(Object.entries(all).filter(([key]) => key !== own));
   const remove = (/** @type {string} */ own) => {
     change(without(files, own));
     setBytes(without(bytes, own));
@@ -95,7 +96,10 @@ export function NewCalibration({ query }) {
     }
   };
   useEffect(() => void (query.study && again(query.study)), [query.study]);
-  /** Keeps author and tags, and the author for the next study of this browser. The service may have named an author already. */
+  /**
+   * Keeps author and tags, and the author for the next study of this browser. The service may have named an author
+   * already.
+   */
   const said = async (/** @type {number} */ study) => {
     author.keep(person);
     const [name, words] = [person.trim(), tagsOf(tags)];
@@ -110,7 +114,11 @@ export function NewCalibration({ query }) {
     // A pilot takes a while: its answer counts only for the draft that it was asked about.
     const isSame = () => draft.current.files === files && draft.current.job === job;
     try {
-      const { experiment: rig, job: calibration } = requests(files, /** @type {string} */ (job), /** @type {string} */ (experiment));
+      const { experiment: rig, job: calibration } = requests(
+        files,
+        /** @type {string} */ (job),
+        /** @type {string} */ (experiment),
+      );
       const answer = await check({ experiment: rig, ...calibration });
       if (isSame()) setChecked(answer);
     } catch (error) {
@@ -122,7 +130,11 @@ export function NewCalibration({ query }) {
     setSent(true);
     setFailure(null);
     try {
-      const { experiment: rig, job: calibration } = requests(files, /** @type {string} */ (job), /** @type {string} */ (experiment));
+      const { experiment: rig, job: calibration } = requests(
+        files,
+        /** @type {string} */ (job),
+        /** @type {string} */ (experiment),
+      );
       const { id } = await addExperiment(rig);
       const created = await submit({ experiment: id, ...calibration, name: name.trim() || null });
       try {
@@ -138,7 +150,10 @@ export function NewCalibration({ query }) {
   };
   const absent = missing(files, job);
   const list = job === null ? null : named(files, job, experiment);
-  const used = list === null ? null : new Set([job, experiment, ...[...list.job, ...list.experiment].map((one) => find(files, one.name))]);
+  const used =
+    list === null
+      ? null
+      : new Set([job, experiment, ...[...list.job, ...list.experiment].map((one) => find(files, one.name))]);
   const table = Object.keys(bytes).find((own) => !(own in files)) ?? of("table")[0];
   const runs = find(files, "runs.csv");
   const isRuns = runs !== null && kinds[runs] === "runs";
@@ -149,26 +164,142 @@ export function NewCalibration({ query }) {
   return html`
     <h1>New calibration</h1>
     <${DropZone} onFiles=${take} />
-    ${examples.answer?.length > 0 && html`<p>Or begin with an example:</p><ul class="examples">
-      ${examples.answer.map((/** @type {any} */ e) => html`<li><button type="button" onClick=${() => open(e.name)}>${e.name}</button> <span><b>${e.title}</b>: <span class="note">${e.summary}</span></span></li>`)}
-      <li><button type="button" onClick=${openTable}>${EXAMPLE_TABLE.name}</button> <span><b>A German Excel file</b>: <span class="note">a table as a rig keeps it, in per cent, kN and mm with decimal commas: its import; <a href=${EXAMPLE_TABLE.path} download>save the file</a></span></span></li></ul>`}
-    ${table && html`<${ImportTable} key=${table} name=${table} bytes=${bytes[table] ?? new TextEncoder().encode(files[table])} onRemove=${() => remove(table)}
-      onFiles=${(/** @type {Files} */ made) => { change({ ...without(files, table), ...made }); setBytes(without(bytes, table)); }} />`}
-    ${isRuns && html`<${RunChoices} text=${files[runs]} onText=${(/** @type {string} */ text) => add({ [runs]: text })} />`}
+    ${
+      examples.answer?.length > 0 &&
+      html`
+        <p>Or begin with an example:</p>
+        <ul class="examples">
+          ${examples.answer.map(
+            (/** @type {any} */ e) =>
+              html`
+                <li>
+                  <button type="button" onClick=${() => open(e.name)}>${e.name}</button>${" "}
+                  <span><b>${e.title}</b>: <span class="note">${e.summary}</span></span>
+                </li>
+              `,
+          )}
+          <li>
+            <button type="button" onClick=${openTable}>${EXAMPLE_TABLE.name}</button>${" "}
+            <span>
+              <b>A German Excel file</b>:${" "}
+              <span class="note">
+                a table as a rig keeps it, in per cent, kN and mm with decimal commas: its
+                import; <a href=${EXAMPLE_TABLE.path} download>save the file</a>
+              </span>
+            </span>
+          </li>
+        </ul>
+      `
+    }
+    ${
+      table &&
+      html`
+        <${ImportTable}
+          key=${table}
+          name=${table}
+          bytes=${bytes[table] ?? new TextEncoder().encode(files[table])}
+          onRemove=${() => remove(table)}
+          onFiles=${(/** @type {Files} */ made) => {
+            change({ ...without(files, table), ...made });
+            setBytes(without(bytes, table));
+          }}
+        />
+      `
+    }
+    ${
+      isRuns &&
+      html`<${RunChoices} text=${files[runs]} onText=${(/** @type {string} */ text) => add({ [runs]: text })} />`
+    }
     ${isAsked && html`<${RigForm} runs=${files[runs]} onFiles=${add} />`}
-    ${Object.keys(files).filter((own) => own !== table).map((own) => html`<${FileCard} key=${own} name=${own} text=${files[own]} kind=${kinds[own]} isUsed=${used === null || used.has(own)}
-      error=${place === own ? failure : null} onText=${(/** @type {string} */ text) => add({ [own]: text })} onRemove=${() => remove(own)} />`)}
-    ${of("job").length > 1 && html`<p><label>Job <select value=${job} onChange=${(/** @type {any} */ e) => { setJob(e.target.value); setChecked(null); }}>
-      ${of("job").map((own) => html`<option value=${own} selected=${own === job}>${own}</option>`)}</select></label></p>`}
-    ${!isEmpty && !table && !isAsked && absent.length > 0 && html`<div class="missing" role="status"><p>Still needed:</p><ul>${absent.map((what) => html`<li>${what}</li>`)}</ul></div>`}
+    ${Object.keys(files)
+      .filter((own) => own !== table)
+      .map(
+        (own) => html`
+          <${FileCard}
+            key=${own}
+            name=${own}
+            text=${files[own]}
+            kind=${kinds[own]}
+            isUsed=${used === null || used.has(own)}
+            error=${place === own ? failure : null}
+            onText=${(/** @type {string} */ text) => add({ [own]: text })}
+            onRemove=${() => remove(own)}
+          />
+        `,
+      )}
+    ${
+      of("job").length > 1 &&
+      html`
+        <p>
+          <label>
+            Job <select
+              value=${job}
+              onChange=${(/** @type {any} */ e) => {
+                setJob(e.target.value);
+                setChecked(null);
+              }}
+            >
+              ${of("job").map((own) => html`<option value=${own} selected=${own === job}>${own}</option>`)}
+            </select>
+          </label>
+        </p>
+      `
+    }
+    ${
+      !isEmpty &&
+      !table &&
+      !isAsked &&
+      absent.length > 0 &&
+      html`
+        <div class="missing" role="status">
+          <p>Still needed:</p>
+          <ul>${absent.map((what) => html`<li>${what}</li>`)}</ul>
+        </div>
+      `
+    }
     ${failure && place === null && html`<${Failure} error=${failure} />`}
-    ${begun && html`<p class="note" role="status">The calibration runs, but its author and tags were not kept: ${begun.message}. <a href=${address(["studies", begun.study, "live"])}>See it run</a></p>`}
+    ${
+      begun &&
+      html`
+        <p class="note" role="status">
+          The calibration runs, but its author and tags were not
+          kept: ${begun.message}. <a href=${address(["studies", begun.study, "live"])}>See it run</a>
+        </p>
+      `
+    }
     ${checked && html`<${JobCheck} answer=${checked} />`}
-    ${!isEmpty && html`<div class="actions">
-      <label>Name <input value=${name} placeholder="as the study is listed" onInput=${(/** @type {any} */ e) => setName(e.target.value)} /></label>
-      <label>Author <input value=${person} onInput=${(/** @type {any} */ e) => setPerson(e.target.value)} /></label>
-      <label>Tags <input value=${tags} placeholder="sand, wheel 3" onInput=${(/** @type {any} */ e) => setTags(e.target.value)} /></label>
-      <button type="button" disabled=${absent.length > 0 || Boolean(table) || isChecking} onClick=${look}>${isChecking ? t`A pilot runs …` : t`Check, with its cost`}</button>
-      <button class="main" type="button" disabled=${absent.length > 0 || Boolean(table) || isSent || begun !== null} onClick=${start}>${isSent ? t`It is being sent` : t`Start the calibration`}</button>
-    </div>`}`;
+    ${
+      !isEmpty &&
+      html`
+        <div class="actions">
+          <label>
+            Name <input
+              value=${name}
+              placeholder="as the study is listed"
+              onInput=${(/** @type {any} */ e) => setName(e.target.value)}
+            />
+          </label>
+          <label>Author <input value=${person} onInput=${(/** @type {any} */ e) => setPerson(e.target.value)} /></label>
+          <label>
+            Tags <input
+              value=${tags}
+              placeholder="sand, wheel 3"
+              onInput=${(/** @type {any} */ e) => setTags(e.target.value)}
+            />
+          </label>
+          <button type="button" disabled=${absent.length > 0 || Boolean(table) || isChecking} onClick=${look}>
+            ${isChecking ? t`A pilot runs …` : t`Check, with its cost`}
+          </button>
+          <button
+            class="main"
+            type="button"
+            disabled=${absent.length > 0 || Boolean(table) || isSent || begun !== null}
+            onClick=${start}
+          >
+            ${isSent ? t`It is being sent` : t`Start the calibration`}
+          </button>
+        </div>
+      `
+    }
+  `;
 }

@@ -22,49 +22,122 @@ const MOST = 6;
 export function Posterior({ study, model }) {
   const { answer, error } = useAnswer(model && path.figures(model.id));
   if (!model) return html`<${NoModel} study=${study} />`;
-  const line = [...study.ledger, ...(study.point_estimates ?? [])].find((/** @type {any} */ l) => l.calibration === model.id);
+  const line = [...study.ledger, ...(study.point_estimates ?? [])].find(
+    (/** @type {any} */ l) => l.calibration === model.id,
+  );
   if (!answer) return html`<${Pending} answer=${answer} error=${error} what="The posterior" />`;
   const marginals = (answer.marginals ?? []).map((/** @type {any} */ m) => ({ ...m, ...m.parameter }));
   return html`
     <${Pictures} key=${model.id} marginals=${marginals} pairs=${answer.posteriors ?? []} model=${model} />
     <h2>Parameters</h2>
     <${ParameterTable} marginals=${marginals} line=${line} />
-    ${!isReport && html`<${Draws} model=${model} />`}`;
+    ${!isReport && html`<${Draws} model=${model} />`}
+  `;
 }
 
 function Pictures(/** @type {{ marginals: any[], pairs: any[], model: any }} */ { marginals, pairs, model }) {
   const names = marginals.map((/** @type {any} */ m) => m.name);
   const [chosen, setChosen] = useState(/** @type {string[]} */ (names.slice(0, MOST)));
   const [cell, setCell] = useState(/** @type {any} */ (null));
-  if (marginals.length === 0) return html`<p class="empty">A fit has a point and no draws: there is no density to draw.</p>`;
-  const flip = (/** @type {string} */ name) => setChosen(chosen.includes(name) ? chosen.filter((c) => c !== name) : [...chosen, name].slice(-MOST));
+  if (marginals.length === 0)
+    return html`<p class="empty">A fit has a point and no draws: there is no density to draw.</p>`;
+  const flip = (/** @type {string} */ name) =>
+    setChosen(chosen.includes(name) ? chosen.filter((c) => c !== name) : [...chosen, name].slice(-MOST));
   return html`
-    <div class="figures small">${marginals.map((/** @type {any} */ m) => html`<${Marginal} key=${m.name} marginal=${m} />`)}</div>
-    <p class="legend"><span>filled: posterior</span><span>dashed outline: prior</span><span>line: mode</span><span>dotted line: reference value, where one was measured</span></p>
+    <div class="figures small">
+      ${marginals.map((/** @type {any} */ m) => html`<${Marginal} key=${m.name} marginal=${m} />`)}
+    </div>
+    <p class="legend">
+      <span>filled: posterior</span>
+      <span>dashed outline: prior</span>
+      <span>line: mode</span>
+      <span>dotted line: reference value, where one was measured</span>
+    </p>
     <h2>Pairs of parameters</h2>
-    ${names.length > MOST && html`<div class="actions" role="group" aria-label="Parameters in the pair plot">
-      ${marginals.map(({ name, unit }) => html`<button type="button" aria-pressed=${chosen.includes(name)} onClick=${() => flip(name)}>${shownParameter({ name, unit }).name}</button>`)}</div>`}
-    <${PairPlot} pairs=${pairs} marginals=${marginals.filter((/** @type {any} */ m) => chosen.includes(m.name))} name=${model.name} onCell=${setCell} />
-    ${cell && html`<div class="card"><${JointPicture} pair=${cell} /><button type="button" onClick=${() => setCell(null)}>Close</button></div>`}`;
+    ${
+      names.length > MOST &&
+      html`
+        <div class="actions" role="group" aria-label="Parameters in the pair plot">
+          ${marginals.map(
+            ({ name, unit }) =>
+              html`
+                <button type="button" aria-pressed=${chosen.includes(name)} onClick=${() => flip(name)}>
+                  ${shownParameter({ name, unit }).name}
+                </button>
+              `,
+          )}
+        </div>
+      `
+    }
+    <${PairPlot}
+      pairs=${pairs}
+      marginals=${marginals.filter((/** @type {any} */ m) => chosen.includes(m.name))}
+      name=${model.name}
+      onCell=${setCell}
+    />
+    ${
+      cell &&
+      html`
+        <div class="card">
+          <${JointPicture} pair=${cell} />
+          <button type="button" onClick=${() => setCell(null)}>Close</button>
+        </div>
+      `
+    }
+  `;
 }
 
 function Marginal(/** @type {{ marginal: any }} */ { marginal }) {
   const { name, unit, isLogarithm, of } = shownParameter(marginal);
   const isLog = marginal.logarithmic || isLogarithm;
-  const rows = marginal.grid.map((/** @type {number} */ x, /** @type {number} */ k) => ({ x: of(x), prior: marginal.prior[k], posterior: marginal.posterior[k] }));
-  return html`<${Figure} title=${t`Posterior of ${name}`} name=${fileName("posterior", marginal.name)} deps=${[marginal]} rows=${() => rows}
-    draw=${(/** @type {number} */ width) => Plot.plot({
-      width, height: 190, marginLeft: 14, marginRight: 14, marginBottom: 40, style: STYLE,
-      x: { type: isLog ? "log" : "linear", label: titled(name, unit), labelArrow: "none", labelAnchor: "center", ticks: 5, ...(marginal.logarithmic ? {} : { tickFormat: tickWords }), grid: true }, y: { axis: null },
-      marks: [
-        Plot.areaY(rows, { x: "x", y1: 0, y2: "posterior", fill: "var(--series-0)", fillOpacity: 0.3 }),
-        Plot.lineY(rows, { x: "x", y: "posterior", stroke: "var(--series-0)" }),
-        Plot.lineY(rows, { x: "x", y: "prior", stroke: "var(--prior)", strokeDasharray: "5 3" }),
-        ...(marginal.mode === null ? [] : [Plot.ruleX([of(marginal.mode)], { stroke: "var(--ink)" })]),
-        ...(marginal.reference === null ? [] : [Plot.ruleX([of(marginal.reference)], { stroke: "var(--reference)", strokeDasharray: "2 3", strokeWidth: 2 })]),
-        Plot.ruleY([0], { stroke: "var(--rule)" }),
-      ],
-    })} />`;
+  const rows = marginal.grid.map((/** @type {number} */ x, /** @type {number} */ k) => ({
+    x: of(x),
+    prior: marginal.prior[k],
+    posterior: marginal.posterior[k],
+  }));
+  return html`
+    <${Figure}
+      title=${t`Posterior of ${name}`}
+      name=${fileName("posterior", marginal.name)}
+      deps=${[marginal]}
+      rows=${() => rows}
+      draw=${(/** @type {number} */ width) =>
+        Plot.plot({
+          width,
+          height: 190,
+          marginLeft: 14,
+          marginRight: 14,
+          marginBottom: 40,
+          style: STYLE,
+          x: {
+            type: isLog ? "log" : "linear",
+            label: titled(name, unit),
+            labelArrow: "none",
+            labelAnchor: "center",
+            ticks: 5,
+            ...(marginal.logarithmic ? {} : { tickFormat: tickWords }),
+            grid: true,
+          },
+          y: { axis: null },
+          marks: [
+            Plot.areaY(rows, { x: "x", y1: 0, y2: "posterior", fill: "var(--series-0)", fillOpacity: 0.3 }),
+            Plot.lineY(rows, { x: "x", y: "posterior", stroke: "var(--series-0)" }),
+            Plot.lineY(rows, { x: "x", y: "prior", stroke: "var(--prior)", strokeDasharray: "5 3" }),
+            ...(marginal.mode === null ? [] : [Plot.ruleX([of(marginal.mode)], { stroke: "var(--ink)" })]),
+            ...(marginal.reference === null
+              ? []
+              : [
+                  Plot.ruleX([of(marginal.reference)], {
+                    stroke: "var(--reference)",
+                    strokeDasharray: "2 3",
+                    strokeWidth: 2,
+                  }),
+                ]),
+            Plot.ruleY([0], { stroke: "var(--rule)" }),
+          ],
+        })}
+    />
+  `;
 }
 
 function Draws(/** @type {{ model: any }} */ { model }) {
@@ -72,10 +145,20 @@ function Draws(/** @type {{ model: any }} */ { model }) {
   const download = async () => {
     try {
       const { columns, rows } = await get(`${path.calibration(model.id)}/posterior`);
-      save("posterior.csv", csv(rows.map((/** @type {number[]} */ row) => Object.fromEntries(columns.map((/** @type {string} */ c, /** @type {number} */ k) => [c, row[k]])))));
+      save(
+        "posterior.csv",
+        csv(
+          rows.map((/** @type {number[]} */ row) =>
+            Object.fromEntries(columns.map((/** @type {string} */ c, /** @type {number} */ k) => [c, row[k]])),
+          ),
+        ),
+      );
     } catch (error) {
       setFailure(error);
     }
   };
-  return html`<div class="actions"><button type="button" onClick=${download}>Download the draws (posterior.csv)</button></div><${Failure} error=${failure} />`;
+  return html`
+    <div class="actions"><button type="button" onClick=${download}>Download the draws (posterior.csv)</button></div>
+    <${Failure} error=${failure} />
+  `;
 }

@@ -25,12 +25,19 @@ const FINAL = ["finished", "failed", "cancelled"];
 
 /** @param {{ id: number, view: string, query: Record<string, string> }} properties */
 export function StudyPage({ id, view, query }) {
-  const { answer: study, error, reload } = useAnswer(path.study(id), { everyMs: (now) => (isOver(now) ? REST_MS : LOOK_MS) });
-  useEffect(() => () => {
-    // Another study has other runs.
-    choose(null);
-    point(null);
-  }, []);
+  const {
+    answer: study,
+    error,
+    reload,
+  } = useAnswer(path.study(id), { everyMs: (now) => (isOver(now) ? REST_MS : LOOK_MS) });
+  useEffect(
+    () => () => {
+      // Another study has other runs.
+      choose(null);
+      point(null);
+    },
+    [],
+  );
   const shown = VIEWS.find((v) => v.name === view) ?? VIEWS[0];
   useEffect(() => {
     document.title = [shown.title, study?.name ?? t`study ${id}`, "Grouser"].join(" – ");
@@ -41,7 +48,9 @@ export function StudyPage({ id, view, query }) {
   return html`
     <div class="heading">
       <h1>${study.name}</h1>
-      <p class="note">study ${id}, ${study.model_kind}, <span class=${`state ${study.state}`}>${translated(study.state)}</span></p>
+      <p class="note">
+        study ${id}, ${study.model_kind}, <span class=${`state ${study.state}`}>${translated(study.state)}</span>
+      </p>
       <${SaidOfStudy} study=${study} />
       <${Source} campaign=${study.campaign} />
       ${error && html`<p class="error" role="alert">${error.message}</p>`}
@@ -49,15 +58,24 @@ export function StudyPage({ id, view, query }) {
     <nav class="views" aria-label="Views of the study">
       ${VIEWS.map((v) => html`<a href=${to(v.name)} aria-current=${v === shown ? "page" : null}>${v.title}</a>`)}
     </nav>
-    ${!["live", "errors"].includes(shown.name) && html`<${ModelPicker} study=${study} model=${model} view=${shown.name} />`}
+    ${
+      !["live", "errors"].includes(shown.name) &&
+      html`<${ModelPicker} study=${study} model=${model} view=${shown.name} />`
+    }
     <section class=${`view ${shown.name}`} aria-label=${shown.title}>
-      <${Guarded} key=${`${shown.name} ${model?.id}`} title=${shown.title}><${ShownView} view=${shown} study=${study} model=${model} query=${query} reload=${reload} /><//>
+      <${Guarded} key=${`${shown.name} ${model?.id}`} title=${shown.title}>
+        <${ShownView} view=${shown} study=${study} model=${model} query=${query} reload=${reload} />
+      <//>
     </section>
     <${StudyActions} study=${study} reload=${reload} />
-    <${ChosenRunsLater} study=${study} model=${model} asked=${query.runs} view=${shown.name} />`;
+    <${ChosenRunsLater} study=${study} model=${model} asked=${query.runs} view=${shown.name} />
+  `;
 }
 
-/** The bar of chosen runs, which is loaded when runs are chosen first, here or by the address. It stays to take them out of the address again. */
+/**
+ * The bar of chosen runs, which is loaded when runs are chosen first, here or by the address. It stays to take them out
+ * of the address again.
+ */
 function ChosenRunsLater(/** @type {{ study: any, model: any, asked?: string, view: string }} */ properties) {
   const isNeeded = useRef(false);
   if (useChosen() || properties.asked) isNeeded.current = true;
@@ -70,10 +88,23 @@ function ModelPicker(/** @type {{ study: any, model: any, view: string }} */ { s
   if (finished.length < 2) return null;
   const go = (/** @type {any} */ event) => replace(address(["studies", study.id, view], { model: event.target.value }));
   return html`
-    <p class="picker"><label>Model
-      <select value=${model?.id} onChange=${go}>
-        ${finished.map((/** @type {any} */ m) => html`<option value=${m.id} selected=${m.id === model?.id}>${modelName(study, m)}${m.id === study.current ? t` (current)` : ""}</option>`)}
-      </select></label></p>`;
+    <p class="picker">
+      <label>
+        Model
+        <select value=${model?.id} onChange=${go}>
+          ${finished.map(
+            (/** @type {any} */ m) =>
+              html`
+                <option value=${m.id} selected=${m.id === model?.id}>
+                  ${modelName(study, m)}
+                  ${m.id === study.current ? t` (current)` : ""}
+                </option>
+              `,
+          )}
+        </select>
+      </label>
+    </p>
+  `;
 }
 
 /** Whether nothing follows any more. */

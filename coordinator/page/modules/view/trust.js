@@ -1,4 +1,5 @@
-// How far to trust a calibration: what it reached, what the data determine, where the model refuses, what it was computed from.
+// How far to trust a calibration: what it reached, what the data determine, where the model refuses, what it was
+// computed from.
 
 import { html } from "../html.js";
 import { t } from "../language/language.js";
@@ -23,45 +24,103 @@ export function Trust({ study, model }) {
     ${provenance.sentences.map((/** @type {string} */ s) => html`<p>${s}</p>`)}
     <ul class="note">${provenance.notes.map((/** @type {string} */ n) => html`<li>${n}</li>`)}</ul>
     ${diagnostics && html`<${Data} diagnostics=${diagnostics} /><${Refused} rejections=${diagnostics.rejections} />`}
-    ${study.rig.length > 0 && html`<h2>What the rig did</h2>${study.rig.map((/** @type {string} */ s) => html`<p>${s}.</p>`)}
-      <p class="note">From repeats of a condition alone, without a model of the contact.</p>`}
+    ${
+      study.rig.length > 0 &&
+      html`
+        <h2>What the rig did</h2>
+        ${study.rig.map((/** @type {string} */ s) => html`<p>${s}.</p>`)}
+        <p class="note">From repeats of a condition alone, without a model of the contact.</p>
+      `
+    }
     <h2>What it was computed from</h2>
     <dl>
-      <dt>Model</dt><dd>${provenance.model}, version ${provenance.model_version ?? "unknown"}</dd>
-      <dt>Data</dt><dd>${provenance.data}</dd>
+      <dt>Model</dt>
+      <dd>${provenance.model}, version ${provenance.model_version ?? "unknown"}</dd>
+      <dt>Data</dt>
+      <dd>${provenance.data}</dd>
       ${provenance.errors.map((/** @type {string} */ e) => html`<dt>Errors</dt><dd>${e}</dd>`)}
-      <dt>Algorithm</dt><dd>${provenance.algorithm}, seed ${provenance.seed}</dd>
-      <dt>Program</dt><dd>${provenance.program}</dd>
+      <dt>Algorithm</dt>
+      <dd>${provenance.algorithm}, seed ${provenance.seed}</dd>
+      <dt>Program</dt>
+      <dd>${provenance.program}</dd>
     </dl>
-    <p class="note">The result is a function of job, seed and model version alone: the same three give the same numbers, bit for bit.</p>
+    <p class="note">
+      The result is a function of job, seed and model version alone: the same three give the same numbers, bit for bit.
+    </p>
     <details><summary>Text of the job</summary><pre tabindex="0">${provenance.job}</pre></details>
-    ${provenance.effects.map((/** @type {any} */ e) => html`<details><summary>Effect ${e.name}</summary><pre tabindex="0">${e.text}</pre></details>`)}`;
+    ${provenance.effects.map(
+      (/** @type {any} */ e) =>
+        html`<details><summary>Effect ${e.name}</summary><pre tabindex="0">${e.text}</pre></details>`,
+    )}
+  `;
 }
 
 const LEVELS = { good: t`✓ yes`, fair: t`~ in part`, poor: t`✗ no` };
 
 /** One line for each question, before the details. */
 function Verdict(/** @type {{ judgements: import("../words/trust.js").Judgement[] }} */ { judgements: all }) {
-  return html`<ul class="judgements" aria-label="How far to trust it, in short">
-    ${all.map(({ question, level, text }) => html`<li class=${level}><b>${LEVELS[level]}</b> <span>${question} <span class="note">${capital(text)}.</span></span></li>`)}</ul>`;
+  return html`
+    <ul class="judgements" aria-label="How far to trust it, in short">
+      ${all.map(
+        ({ question, level, text }) =>
+          html`
+            <li class=${level}>
+              <b>${LEVELS[level]}</b> <span>${question} <span class="note">${capital(text)}.</span></span>
+            </li>
+          `,
+      )}
+    </ul>
+  `;
 }
 
 /** What each channel tells, and what the parameters know of it. */
 function Data(/** @type {{ diagnostics: any }} */ { diagnostics }) {
-  const p = (/** @type {number | null} */ value) => (value === null || value === undefined ? "–" : value < 1e-6 ? "< 10⁻⁶" : digits(value, 2));
+  const p = (/** @type {number | null} */ value) =>
+    value === null || value === undefined ? "–" : value < 1e-6 ? "< 10⁻⁶" : digits(value, 2);
   const channels = diagnostics.channels.map((/** @type {any} */ c) => {
     const quantity = shown(c.unit);
     const value = (/** @type {number | null} */ v) => digits(v === null ? null : v * quantity.scale);
-    return [titled(channelName(c.channel), quantity.unit), c.data, value(c.error_sd), value(c.prior_predictive_sd), digits(c.information, 2), digits(c.chi_square?.chi_square), digits(c.chi_square?.degrees_of_freedom), p(c.chi_square?.p)];
+    return [
+      titled(channelName(c.channel), quantity.unit),
+      c.data,
+      value(c.error_sd),
+      value(c.prior_predictive_sd),
+      digits(c.information, 2),
+      digits(c.chi_square?.chi_square),
+      digits(c.chi_square?.degrees_of_freedom),
+      p(c.chi_square?.p),
+    ];
   });
-  const parameters = diagnostics.parameters.map((/** @type {any} */ q) => [shownParameter(q).name, digits(q.contraction, 2), p(q.conflict_p), q.at_bound ? t`at its bound` : ""]);
+  const parameters = diagnostics.parameters.map((/** @type {any} */ q) => [
+    shownParameter(q).name,
+    digits(q.contraction, 2),
+    p(q.conflict_p),
+    q.at_bound ? t`at its bound` : "",
+  ]);
   return html`
     <h2>What the data tell</h2>
-    <${Table} label="Channels" head=${[t`channel`, t`rows`, t`error sd`, t`prior spread`, t`information`, t`chi-square`, t`expected`, "p"]} rows=${channels} numbers=${[1, 2, 3, 4, 5, 6, 7]} />
-    <p class="note">Error sd: noise, discrepancy and shared errors together. Information: the prior's spread of a prediction over it; below 1 a row tells less than the prior.</p>
-    <${Table} label="Parameters against their priors" head=${[t`parameter`, t`contraction`, t`p of prior conflict`, ""]} rows=${parameters} numbers=${[1, 2]} />
-    <p class="note">Contraction: 1 less the sd after the fit over that before; 0: the data tell nothing. Prior conflict: probability of a posterior so far out if the prior is right.</p>
-    ${diagnostics.verification.results > 0 && html`<p>${verified(diagnostics.verification)}</p>`}`;
+    <${Table}
+      label="Channels"
+      head=${[t`channel`, t`rows`, t`error sd`, t`prior spread`, t`information`, t`chi-square`, t`expected`, "p"]}
+      rows=${channels}
+      numbers=${[1, 2, 3, 4, 5, 6, 7]}
+    />
+    <p class="note">
+      Error sd: noise, discrepancy and shared errors together. Information: the prior's spread of a prediction over it;
+      below 1 a row tells less than the prior.
+    </p>
+    <${Table}
+      label="Parameters against their priors"
+      head=${[t`parameter`, t`contraction`, t`p of prior conflict`, ""]}
+      rows=${parameters}
+      numbers=${[1, 2]}
+    />
+    <p class="note">
+      Contraction: 1 less the sd after the fit over that before; 0: the data tell nothing. Prior conflict: probability
+      of a posterior so far out if the prior is right.
+    </p>
+    ${diagnostics.verification.results > 0 && html`<p>${verified(diagnostics.verification)}</p>`}
+  `;
 }
 
 /** What was computed twice. */
@@ -74,18 +133,42 @@ function verified(/** @type {any} */ { results, confirmed, workers }) {
 /** Where the model refuses parameters. */
 function Refused(/** @type {{ rejections: any }} */ { rejections }) {
   if (rejections.prior_draws === 0) return null;
-  if (rejections.prior_refused === 0) return html`<p>The model accepted every draw from the prior (${rejections.prior_draws}).</p>`;
+  if (rejections.prior_refused === 0)
+    return html`<p>The model accepted every draw from the prior (${rejections.prior_draws}).</p>`;
   // The outer bins end at the bounds of the prior, which may be as far out as the model allows.
-  const range = (/** @type {string} */ from, /** @type {string} */ to, /** @type {number} */ k, /** @type {number} */ count) =>
-    (k === 0 ? t`below ${to}` : k === count - 1 ? t`above ${from}` : `${from}${t` to `}${to}`);
-  const cell = (/** @type {any} */ bin, /** @type {number} */ k, /** @type {any[]} */ bins, /** @type {(value: number) => number} */ of) => {
+  const range = (
+    /** @type {string} */ from,
+    /** @type {string} */ to,
+    /** @type {number} */ k,
+    /** @type {number} */ count,
+  ) => (k === 0 ? t`below ${to}` : k === count - 1 ? t`above ${from}` : `${from}${t` to `}${to}`);
+  const cell = (
+    /** @type {any} */ bin,
+    /** @type {number} */ k,
+    /** @type {any[]} */ bins,
+    /** @type {(value: number) => number} */ of,
+  ) => {
     const end = (/** @type {number | null} */ v) => (v === null ? "" : digits(of(v), 3));
     const refused = /** @type {number[]} */ (Object.values(bin.refused)).reduce((a, b) => a + b, 0);
-    return html`<b>${refused}</b> of ${bin.draws}<br /><span class="note">${range(end(bin.from), end(bin.to), k, bins.length)}</span>`;
+    return html`
+      <b>${refused}</b> of ${bin.draws}
+      <br />
+      <span class="note">${range(end(bin.from), end(bin.to), k, bins.length)}</span>
+    `;
   };
   return html`
     <h2>Where the model refuses parameters</h2>
-    <p>It refused ${rejections.prior_refused} of ${rejections.prior_draws} draws from the prior${rejections.region ? t`, most of them in one region (${probability(rejections.region.p)} by chance)` : ""}.</p>
-    <${Table} label="Rejections by region of the prior" head=${[t`parameter`, t`lowest fifth`, t`second`, t`middle`, t`fourth`, t`highest fifth`]}
-      rows=${rejections.parameters.map((/** @type {any} */ q) => [parameterTitle(q), ...q.bins.map((/** @type {any} */ bin, /** @type {number} */ k) => cell(bin, k, q.bins, shownParameter(q).of))])} />`;
+    <p>
+      It refused ${rejections.prior_refused} of ${rejections.prior_draws} draws from the
+      prior${rejections.region ? t`, most of them in one region (${probability(rejections.region.p)} by chance)` : ""}.
+    </p>
+    <${Table}
+      label="Rejections by region of the prior"
+      head=${[t`parameter`, t`lowest fifth`, t`second`, t`middle`, t`fourth`, t`highest fifth`]}
+      rows=${rejections.parameters.map((/** @type {any} */ q) => [
+        parameterTitle(q),
+        ...q.bins.map((/** @type {any} */ bin, /** @type {number} */ k) => cell(bin, k, q.bins, shownParameter(q).of)),
+      ])}
+    />
+  `;
 }

@@ -1,5 +1,5 @@
-// The views of a study in their order. Each is asked for when it is first shown, so that whoever reads the story does not wait for the
-// others.
+// The views of a study in their order. Each is asked for when it is first shown, so that whoever reads the story does
+// not wait for the others.
 
 import { html } from "../html.js";
 import { t } from "../language/language.js";
@@ -12,7 +12,11 @@ export const VIEWS = [
   { name: "story", title: t`Story`, load: () => import("./story.js").then((module) => module.Story) },
   { name: "compare", title: t`Compare`, load: () => import("./compare.js").then((module) => module.Compare) },
   { name: "failures", title: t`Where it fails`, load: () => import("./failures.js").then((module) => module.Failures) },
-  { name: "effects", title: t`Missing effect`, load: () => import("./missing_effect.js").then((module) => module.MissingEffect) },
+  {
+    name: "effects",
+    title: t`Missing effect`,
+    load: () => import("./missing_effect.js").then((module) => module.MissingEffect),
+  },
   { name: "posterior", title: t`Posterior`, load: () => import("./posterior.js").then((module) => module.Posterior) },
   { name: "predict", title: t`Predict`, load: () => import("./predict.js").then((module) => module.Predict) },
   { name: "decide", title: t`Decide`, load: () => import("./decide.js").then((module) => module.Decide) },

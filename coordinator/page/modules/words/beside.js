@@ -5,7 +5,10 @@ import { runWords } from "./ledger.js";
 import { meanAndSpread, shownParameter } from "./parameter.js";
 import { capital, channelName, CHANNELS, digits, errorWords, minus, shown, unitOf, words } from "./quantity.js";
 
-/** @typedef {{ study: any, line: any, diagnostics: any }} Side line: of the error ledger of its current model. diagnostics: of that model */
+/**
+ * @typedef {{ study: any, line: any, diagnostics: any }} Side line: of the error ledger of its current model.
+ *   diagnostics: of that model
+ */
 
 const USES = /** @type {const} */ (["holdout", "fit"]);
 const USE_WORDS = { fit: t`fitted runs`, holdout: t`held-out runs` };
@@ -20,28 +23,50 @@ export function rowsBeside(sides) {
   return [
     [t`State`, ...of(({ study }) => translated(study.state)), ""],
     [t`Runs`, ...of(({ line }) => (line ? runWords(line) : "–")), ""],
-    [t`Model`, ...of(({ study, line }) => [words(study.model_kind ?? t`unknown`), ...(line?.effects.length > 0 ? [t`with ${line.effects.map(words).join(", ")}`] : [])].join(" ")), ""],
+    [
+      t`Model`,
+      ...of(({ study, line }) =>
+        [
+          words(study.model_kind ?? t`unknown`),
+          ...(line?.effects.length > 0 ? [t`with ${line.effects.map(words).join(", ")}`] : []),
+        ].join(" "),
+      ),
+      "",
+    ],
     [t`Found`, ...of(({ study }) => capital(study.verdict?.short ?? t`no search yet`)), ""],
-    ...errors(sides), ...parameters(sides),
+    ...errors(sides),
+    ...parameters(sides),
   ];
 }
 
 /** The errors of the current models, each over its own runs. */
 function errors(/** @type {Side[]} */ sides) {
-  return USES.flatMap((use) => CHANNELS.flatMap((channel) => {
-    const { unit, scale } = shown(unitOf(channel));
-    const values = sides.map(({ line }) => line?.error[use]?.[channel]);
-    if (values.every((value) => !value)) return [];
-    const cells = values.map((value) => (value ? `${errorWords(value.rmse * scale)} ${unit}` : "–"));
-    const [a, b] = values;
-    const isSame = a && b && a.runs === b.runs;
-    return [[t`Error of ${channelName(channel)}, ${USE_WORDS[use]}`, ...cells, isSame ? `${minus(`${b.rmse < a.rmse ? "" : "+"}${((100 * (b.rmse - a.rmse)) / a.rmse).toFixed(0)}`)} %` : t`over other runs`]];
-  }));
+  return USES.flatMap((use) =>
+    CHANNELS.flatMap((channel) => {
+      const { unit, scale } = shown(unitOf(channel));
+      const values = sides.map(({ line }) => line?.error[use]?.[channel]);
+      if (values.every((value) => !value)) return [];
+      const cells = values.map((value) => (value ? `${errorWords(value.rmse * scale)} ${unit}` : "–"));
+      const [a, b] = values;
+      const isSame = a && b && a.runs === b.runs;
+      return [
+        [
+          t`Error of ${channelName(channel)}, ${USE_WORDS[use]}`,
+          ...cells,
+          isSame
+            ? `${minus(`${b.rmse < a.rmse ? "" : "+"}${((100 * (b.rmse - a.rmse)) / a.rmse).toFixed(0)}`)} %`
+            : t`over other runs`,
+        ],
+      ];
+    }),
+  );
 }
 
 /** The parameters by posterior mean and sd. */
 function parameters(/** @type {Side[]} */ sides) {
-  const units = new Map(sides.flatMap(({ diagnostics }) => (diagnostics?.parameters ?? []).map((/** @type {any} */ q) => [q.name, q.unit])));
+  const units = new Map(
+    sides.flatMap(({ diagnostics }) => (diagnostics?.parameters ?? []).map((/** @type {any} */ q) => [q.name, q.unit])),
+  );
   const names = [...new Set(sides.flatMap(({ line }) => Object.keys(line?.parameters ?? {})))];
   return names.map((name) => {
     const unit = units.get(name);

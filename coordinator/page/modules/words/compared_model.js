@@ -4,7 +4,8 @@ import { t } from "../language/language.js";
 import { CHANNELS, digits, errorWords, minus, probability, short, shown, titled, unitOf } from "./quantity.js";
 
 /** Names in the order of falling evidence; a model without evidence comes last. */
-const byEvidence = (/** @type {any} */ a, /** @type {any} */ b) => (b.log_evidence ?? -Infinity) - (a.log_evidence ?? -Infinity);
+const byEvidence = (/** @type {any} */ a, /** @type {any} */ b) =>
+  (b.log_evidence ?? -Infinity) - (a.log_evidence ?? -Infinity);
 
 /**
  * Head and rows of the comparison, the most probable model first.
@@ -12,14 +13,29 @@ const byEvidence = (/** @type {any} */ a, /** @type {any} */ b) => (b.log_eviden
  * @returns {{ head: string[], rows: string[][] }}
  */
 export function comparedModels(comparison) {
-  const channels = CHANNELS.filter((channel) => comparison.models.some((/** @type {any} */ m) => m.left_out?.[channel]));
-  const head = [t`model`, t`ln evidence`, t`probability`, t`p of chi-square`, ...channels.map((c) => titled(short(c), shown(unitOf(c)).unit)), t`noise sds`, t`answer`];
-  const rows = [...comparison.models].sort(byEvidence).map((model) => [
-    model.name, evidence(model), probability(model.probability), model.chi_square_p === null ? "–" : probability(model.chi_square_p),
-    ...channels.map((c) => (model.left_out?.[c] ? errorWords(model.left_out[c].rmse * shown(unitOf(c)).scale) : "–")),
-    errorWords(model.left_out?.all.rmse_fixed_sigma),
-    answer(comparison, model),
-  ]);
+  const channels = CHANNELS.filter((channel) =>
+    comparison.models.some((/** @type {any} */ m) => m.left_out?.[channel]),
+  );
+  const head = [
+    t`model`,
+    t`ln evidence`,
+    t`probability`,
+    t`p of chi-square`,
+    ...channels.map((c) => titled(short(c), shown(unitOf(c)).unit)),
+    t`noise sds`,
+    t`answer`,
+  ];
+  const rows = [...comparison.models]
+    .sort(byEvidence)
+    .map((model) => [
+      model.name,
+      evidence(model),
+      probability(model.probability),
+      model.chi_square_p === null ? "–" : probability(model.chi_square_p),
+      ...channels.map((c) => (model.left_out?.[c] ? errorWords(model.left_out[c].rmse * shown(unitOf(c)).scale) : "–")),
+      errorWords(model.left_out?.all.rmse_fixed_sigma),
+      answer(comparison, model),
+    ]);
   return { head, rows };
 }
 
@@ -34,10 +50,14 @@ function evidence(/** @type {any} */ { log_evidence: log, log_evidence_se: se })
 /** What is decided about a model. */
 function answer(/** @type {any} */ comparison, /** @type {any} */ model) {
   const best = comparison.models.find((/** @type {any} */ m) => m.calibration === comparison.best);
-  const decided = model !== best ? behind(best, model)
-    : comparison.none_of_these ? t`most probable, yet none of these`
-    : comparison.none_of_these === false ? t`chosen`
-    : t`chosen; none of these cannot be said`;
+  const decided =
+    model !== best
+      ? behind(best, model)
+      : comparison.none_of_these
+        ? t`most probable, yet none of these`
+        : comparison.none_of_these === false
+          ? t`chosen`
+          : t`chosen; none of these cannot be said`;
   return model.calibration === comparison.best_predicting ? t`${decided}; predicts best` : decided;
 }
 
@@ -48,6 +68,8 @@ function behind(/** @type {any} */ best, /** @type {any} */ model) {
 }
 
 /** Which data the errors are of. */
-export const leftOutWords = (/** @type {any} */ comparison) => (comparison.models.some((/** @type {any} */ m) => m.left_out_by === "holdout")
-  ? t`Errors are of the held-out runs, which are never fitted`
-  : t`No runs are held out: errors are of each condition, predicted from the others by weighting the draws, exact enough to rank models alone`);
+export const leftOutWords = (/** @type {any} */ comparison) =>
+  comparison.models.some((/** @type {any} */ m) => m.left_out_by === "holdout")
+    ? t`Errors are of the held-out runs, which are never fitted`
+    : t`No runs are held out: errors are of each condition, predicted from the others by weighting the draws, exact
+      enough to rank models alone`;

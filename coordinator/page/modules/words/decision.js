@@ -7,7 +7,9 @@ import { minus, power } from "./quantity.js";
 const LARGE = 1e7;
 const DECIMALS = 7;
 
-/** A number rounded to a count of significant digits by the rule of the terminal: whole tens and hundreds have zeros. */
+/**
+ * A number rounded to a count of significant digits by the rule of the terminal: whole tens and hundreds have zeros.
+ */
 export function significant(/** @type {number | null | undefined} */ value, /** @type {number} */ count) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";
@@ -32,4 +34,9 @@ export const lossWithError = (/** @type {{ expected_loss: number, expected_loss_
 export const percent = (/** @type {number} */ share) => `${(100 * share).toFixed(0)} %`;
 
 /** A slip to a hundredth, in the unit that is shown. */
-export const slipDigits = (/** @type {number | null | undefined} */ slip) => (slip === null || slip === undefined ? "–" : slipUnit.unit === "1" ? slip.toFixed(2) : `${(slip * slipUnit.scale).toFixed(0)} ${slipUnit.unit}`);
+export const slipDigits = (/** @type {number | null | undefined} */ slip) =>
+  slip === null || slip === undefined
+    ? "–"
+    : slipUnit.unit === "1"
+      ? slip.toFixed(2)
+      : `${(slip * slipUnit.scale).toFixed(0)} ${slipUnit.unit}`;

@@ -12,4 +12,5 @@ export function few(/** @type {string[]} */ names) {
 }
 
 /** The explanations that a run tells apart. */
-export const separatedWords = (/** @type {string[]} */ separates) => few(separates.map((name) => (name === "none" ? t`nothing missing` : name)));
+export const separatedWords = (/** @type {string[]} */ separates) =>
+  few(separates.map((name) => (name === "none" ? t`nothing missing` : name)));

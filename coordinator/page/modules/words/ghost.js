@@ -15,7 +15,9 @@ export function withGhost(rows, curves, ghost) {
   const layers = [{ name: "model", colour: null, rows }];
   const values = ghost ? curves?.effects?.[ghost] : null;
   if (!values) return layers;
-  const known = new Map(curves.data.map((/** @type {any} */ d, /** @type {number} */ k) => [`${d.run} ${d.channel}`, values[k]]));
+  const known = new Map(
+    curves.data.map((/** @type {any} */ d, /** @type {number} */ k) => [`${d.run} ${d.channel}`, values[k]]),
+  );
   const own = rows.map((r) => ({ ...r, predicted: known.get(`${r.run} ${r.channel}`) ?? null, q05: null, q95: null }));
   return [...layers, { name: String(ghost), colour: "var(--ghost)", rows: own, isGhost: true }];
 }

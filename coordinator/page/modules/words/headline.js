@@ -5,8 +5,9 @@ import { meanAndSpread, shownParameter } from "./parameter.js";
 import { capital, channelName, digits, errorWords, probability, shown, unitOf, words } from "./quantity.js";
 
 /**
- * @typedef {{ channel: string, use: "fit" | "holdout", unit: string, before: number | null, now: number, noise: number | null }} ErrorChange
- *   Root mean square errors in the unit that is shown; before: of the submitted model on the same runs.
+ * @typedef {{ channel: string, use: "fit" | "holdout", unit: string, before: number | null, now: number, noise: number
+ *   | null }} ErrorChange Root mean square errors in the unit that is shown; before: of the submitted model on the same
+ *   runs.
  * @typedef {{ name: string, summary: string, probability: number }} Explanation
  */
 
@@ -26,7 +27,14 @@ function plain(/** @type {any} */ { name, summary }) {
  */
 export function lineBefore(ledger, id) {
   const now = ledger.find((line) => line.calibration === id);
-  const before = now && ledger.find((line) => line.data_set === now.data_set && line !== now && line.effects.every((/** @type {string} */ e) => now.effects.includes(e)));
+  const before =
+    now &&
+    ledger.find(
+      (line) =>
+        line.data_set === now.data_set &&
+        line !== now &&
+        line.effects.every((/** @type {string} */ e) => now.effects.includes(e)),
+    );
   return before && before.effects.length < now.effects.length ? before : null;
 }
 
@@ -47,17 +55,30 @@ export function errorChanges(study, model) {
     const sigma = study.fixed_sigma[channel];
     // A noise that was inferred with the misfit is no measure of it.
     const noise = sigma && sigma.source !== "inferred" ? sigma.sd * scale : null;
-    return [{ channel, use, unit, before: old && old.runs === own.runs ? old.rmse * scale : null, now: own.rmse * scale, noise }];
+    return [
+      {
+        channel,
+        use,
+        unit,
+        before: old && old.runs === own.runs ? old.rmse * scale : null,
+        now: own.rmse * scale,
+        noise,
+      },
+    ];
   });
   const gain = (/** @type {ErrorChange} */ c) => (c.before === null ? 0 : Math.log(c.before / c.now));
-  return before ? changes.sort((/** @type {ErrorChange} */ a, /** @type {ErrorChange} */ b) => gain(b) - gain(a)) : changes;
+  return before
+    ? changes.sort((/** @type {ErrorChange} */ a, /** @type {ErrorChange} */ b) => gain(b) - gain(a))
+    : changes;
 }
 
 /** `11.7 → 1.19 N`; a line does not break within it. */
-export const changeWords = (/** @type {ErrorChange} */ { before, now, unit }) => `${before === null ? "" : `${errorWords(before)} → `}${errorWords(now)} ${unit}`.replaceAll(" ", "\u00a0");
+export const changeWords = (/** @type {ErrorChange} */ { before, now, unit }) =>
+  `${before === null ? "" : `${errorWords(before)} → `}${errorWords(now)} ${unit}`.replaceAll(" ", "\u00a0");
 
 /** `1.2 N`: the noise beside an error. */
-const noiseWords = (/** @type {ErrorChange} */ { noise, unit }) => `${digits(noise, 2)} ${unit}`.replaceAll(" ", "\u00a0");
+const noiseWords = (/** @type {ErrorChange} */ { noise, unit }) =>
+  `${digits(noise, 2)} ${unit}`.replaceAll(" ", "\u00a0");
 
 /**
  * The headline of a model.
@@ -71,40 +92,68 @@ export function headline({ story }, changes) {
   const beside = first && first.noise !== null ? t`, noise ${noiseWords(first)}` : "";
   const added = missing.already_added;
   const isCalm = wrong.channels.length > 0 && wrong.channels.every((/** @type {any} */ c) => c.is_within_noise);
-  if (added.length > 0 && first?.before != null) return capital(added.length === 1 ? t`${error} with one more effect` : t`${error} with ${added.length} more effects`);
+  if (added.length > 0 && first?.before != null)
+    return capital(
+      added.length === 1 ? t`${error} with one more effect` : t`${error} with ${added.length} more effects`,
+    );
   const found = {
     named: () => t`something is missing: ${missing.named.map(plain).join("; ")}`,
     class: () => t`one of ${missing.named.length} effects is missing, and the data do not tell which`,
     none: null,
     not_in_library: () => t`an effect is missing that the library does not have`,
     undecided: () => t`whether something is missing is undecided`,
-    nothing_detectable: () => (isCalm ? t`the model explains the runs to within the noise` : t`nothing is missing that these data can show`),
-  }[/** @type {"named" | "class" | "not_in_library" | "undecided" | "nothing_detectable" | "none"} */ (missing.verdict ?? "none")];
-  if (!found && !isCalm && first) return capital(t`${channelName(first.channel)} of ${USES[first.use]} is off by ${changeWords({ ...first, before: null })}${first.noise === null ? "" : t` (noise ${noiseWords(first)})`}; what is missing was not searched for`);
-  const verdict = found ? found() : isCalm ? t`the model explains the runs to within the noise` : t`the model was not searched for a missing effect`;
+    nothing_detectable: () =>
+      isCalm ? t`the model explains the runs to within the noise` : t`nothing is missing that these data can show`,
+  }[
+    /** @type {"named" | "class" | "not_in_library" | "undecided" | "nothing_detectable" | "none"} */ (
+      missing.verdict ?? "none"
+    )
+  ];
+  if (!found && !isCalm && first) {
+    const noise = first.noise === null ? "" : t` (noise ${noiseWords(first)})`;
+    const error = changeWords({ ...first, before: null });
+    return capital(
+      t`${channelName(first.channel)} of ${USES[first.use]} is off by ${error}${noise}; what is missing was not searched
+        for`,
+    );
+  }
+  const verdict = found
+    ? found()
+    : isCalm
+      ? t`the model explains the runs to within the noise`
+      : t`the model was not searched for a missing effect`;
   return capital(error ? t`${verdict} (${error}${beside})` : verdict);
 }
 
 /**
- * The explanations to draw as bars: of an effect that was added and its rivals, else of the search; the last is all others together.
+ * The explanations to draw as bars: of an effect that was added and its rivals, else of the search; the last is all
+ * others together.
  * @param {any} missing of a story
  * @returns {Explanation[]}
  */
 export function explanations({ already_added: added, leading }) {
   const judged = added.filter((/** @type {any} */ effect) => effect.probability !== null);
   const all = judged.length > 0 ? judged.flatMap((/** @type {any} */ effect) => [effect, ...effect.rivals]) : leading;
-  const named = all.map((/** @type {any} */ effect) => ({ name: effect.name, summary: plain(effect), probability: effect.probability }));
+  const named = all.map((/** @type {any} */ effect) => ({
+    name: effect.name,
+    summary: plain(effect),
+    probability: effect.probability,
+  }));
   // Each of several effects was found by a separate search, so their probabilities do not sum to one.
   const rest = 1 - named.reduce((/** @type {number} */ sum, /** @type {Explanation} */ e) => sum + e.probability, 0);
-  return judged.length > 1 || rest < 1e-9 || named.length === 0 ? named : [...named, { name: "", summary: t`all other explanations together`, probability: rest }];
+  return judged.length > 1 || rest < 1e-9 || named.length === 0
+    ? named
+    : [...named, { name: "", summary: t`all other explanations together`, probability: rest }];
 }
 
 /** `shear modulus 9.4 ± 0.6 mm`: the parameters of an added effect. */
 export function strengthWords(/** @type {any} */ { strengths }) {
-  return strengths.map((/** @type {any} */ { name, unit, mean, sd }) => {
-    const called = shownParameter({ name: name.split(".").slice(1).join(".") || name, unit });
-    return `${called.name} ${meanAndSpread(called, mean, sd)}${called.unit === "" ? "" : ` ${called.unit}`}`;
-  }).join(", ");
+  return strengths
+    .map((/** @type {any} */ { name, unit, mean, sd }) => {
+      const called = shownParameter({ name: name.split(".").slice(1).join(".") || name, unit });
+      return `${called.name} ${meanAndSpread(called, mean, sd)}${called.unit === "" ? "" : ` ${called.unit}`}`;
+    })
+    .join(", ");
 }
 
 /** The probability of an explanation in words. */

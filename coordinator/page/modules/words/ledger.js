@@ -8,7 +8,8 @@ import { t } from "../language/language.js";
  */
 
 /**
- * The lines that were calibrated on the same runs, in their order: errors and evidence over different runs do not compare.
+ * The lines that were calibrated on the same runs, in their order: errors and evidence over different runs do not
+ * compare.
  * @template {LedgerLine} L
  * @param {L[]} lines
  * @returns {L[][]}
@@ -33,8 +34,8 @@ export function runWords(/** @type {Runs} */ { fitted_runs, held_out_runs }) {
 }
 
 /**
- * What a line has that the line before it has not: `+ slip_sinkage`, `+ 1 run`; its model where that dropped something, its name where it
- * differs in nothing.
+ * What a line has that the line before it has not: `+ slip_sinkage`, `+ 1 run`; its model where that dropped something,
+ * its name where it differs in nothing.
  * @param {LedgerLine | undefined} before
  * @param {LedgerLine} now
  * @returns {string[]} the parts

@@ -8,7 +8,9 @@ const EQUAL = 0.005;
 const READING = 0.02;
 /** Readings that are not further apart than this share of the value are scatter about one setting. */
 const SCATTER = 0.05;
-/** Levels of which fewer runs than this share have company are no levels, but single values, unless they lie far apart. */
+/**
+ * Levels of which fewer runs than this share have company are no levels, but single values, unless they lie far apart.
+ */
 const REPEATED = 0.75;
 /** A greater ratio of neighbouring values lies far apart. */
 const FAR = 1.15;
@@ -18,9 +20,10 @@ const MAX_LEVELS = 60;
 /** @typedef {{ low: number, high: number, count: number }} Level */
 
 /**
- * Levels of a positive quantity, ascending: groups of values that the gaps between them set apart. Settings that are repeated, such as
- * 100, 110 and 120 N, are a level each; readings that scatter about settings are a level for each setting; readings without gaps are
- * one level. Of all ways to cut at the widest gaps, the one is taken whose gaps are widest compared with the extents of the levels.
+ * Levels of a positive quantity, ascending: groups of values that the gaps between them set apart. Settings that are
+ * repeated, such as 100, 110 and 120 N, are a level each; readings that scatter about settings are a level for each
+ * setting; readings without gaps are one level. Of all ways to cut at the widest gaps, the one is taken whose gaps are
+ * widest compared with the extents of the levels.
  * @param {number[]} values
  * @returns {Level[]}
  */
@@ -31,7 +34,8 @@ export function levels(values) {
   if (isRepeated(settings) && apartness(settings) > 1) return settings;
   const gaps = new Set(ascending.slice(1).map((value, k) => value - ascending[k]));
   const whole = cut(ascending, () => Infinity);
-  return [...[...gaps].sort((a, b) => b - a).slice(0, MAX_LEVELS), 0].map((widest) => cut(ascending, () => widest))
+  return [...[...gaps].sort((a, b) => b - a).slice(0, MAX_LEVELS), 0]
+    .map((widest) => cut(ascending, () => widest))
     .filter((found) => isBeyond(found, FAR) || (isBeyond(found, 1 + SCATTER) && isRepeated(found)))
     .reduce((best, found) => (apartness(found) > Math.max(1, apartness(best)) ? found : best), whole);
 }
@@ -62,12 +66,15 @@ function isRepeated(/** @type {Level[]} */ all) {
 const neighbours = (/** @type {Level[]} */ all) => all.slice(1).map((above, k) => ({ below: all[k], above }));
 
 /** Whether every level begins beyond a multiple of the end of the level below it. */
-const isBeyond = (/** @type {Level[]} */ all, /** @type {number} */ ratio) => neighbours(all).every(({ below, above }) => above.low > ratio * below.high);
+const isBeyond = (/** @type {Level[]} */ all, /** @type {number} */ ratio) =>
+  neighbours(all).every(({ below, above }) => above.low > ratio * below.high);
 
 /** The least gap between neighbouring levels over their extent, or over what a reading may differ; 0 of one level. */
 function apartness(/** @type {Level[]} */ all) {
-  const ratios = neighbours(all).map(({ below, above }) =>
-    (above.low - below.high) / Math.max(below.high - below.low, above.high - above.low, READING * below.high));
+  const ratios = neighbours(all).map(
+    ({ below, above }) =>
+      (above.low - below.high) / Math.max(below.high - below.low, above.high - above.low, READING * below.high),
+  );
   return ratios.length === 0 ? 0 : Math.min(...ratios);
 }
 
@@ -75,10 +82,19 @@ function apartness(/** @type {Level[]} */ all) {
 export const levelOf = (/** @type {Level[]} */ all, /** @type {number} */ value) =>
   all.findIndex(({ low, high }) => value >= low && value <= high);
 
-/** `60 N`, `21 to 27 N`: with a digit more where two do not tell the ends apart; `≈ 14.1 mm/s` of scatter about one setting. */
-export function levelWords(/** @type {{ low: number, high: number }} */ { low, high }, /** @type {string} */ unit, scale = 1) {
-  const rounded = (/** @type {number} */ value, /** @type {number} */ count) => String(Number((value * scale).toPrecision(count)));
-  if (high - low <= SCATTER * high) return `${high - low <= EQUAL * high ? "" : "≈ "}${rounded((low + high) / 2, 3)} ${unit}`;
+/**
+ * `60 N`, `21 to 27 N`: with a digit more where two do not tell the ends apart; `≈ 14.1 mm/s` of scatter about one
+ * setting.
+ */
+export function levelWords(
+  /** @type {{ low: number, high: number }} */ { low, high },
+  /** @type {string} */ unit,
+  scale = 1,
+) {
+  const rounded = (/** @type {number} */ value, /** @type {number} */ count) =>
+    String(Number((value * scale).toPrecision(count)));
+  if (high - low <= SCATTER * high)
+    return `${high - low <= EQUAL * high ? "" : "≈ "}${rounded((low + high) / 2, 3)} ${unit}`;
   const step = 10 ** (Math.floor(Math.log10(high)) - 1);
   return `${[low, high].map((value) => rounded(value, high - low < step ? 3 : 2)).join(t` to `)} ${unit}`;
 }

@@ -4,7 +4,8 @@ import { t, translated } from "../language/language.js";
 import { shownUnit } from "../units.js";
 
 /** How a unit in SI is shown: in the units that a person chose. */
-export const shown = (/** @type {string} */ unit) => shownUnit(unit) ?? { unit: raised(unit.replace(/^deg$/, "°")), scale: 1 };
+export const shown = (/** @type {string} */ unit) =>
+  shownUnit(unit) ?? { unit: raised(unit.replace(/^deg$/, "°")), scale: 1 };
 
 const SHORT = { drawbar_pull: t`pull`, torque: t`torque`, sinkage: t`sinkage`, lateral_force: t`lateral force` };
 const NAMES = { ...SHORT, drawbar_pull: t`drawbar pull` };
@@ -14,45 +15,66 @@ const UNITS = { drawbar_pull: "N", torque: "N m", sinkage: "m", lateral_force: "
 export const CHANNELS = /** @type {const} */ (["drawbar_pull", "torque", "sinkage", "lateral_force"]);
 
 /**
- * Units and numbers in a text of the service as people write them: `kg/m³`, `7·10⁻⁷`, `−0.5`. A number with nine decimals or more, which is
- * written to the last digit, has four digits, or its whole part.
+ * Units and numbers in a text of the service as people write them: `kg/m³`, `7·10⁻⁷`, `−0.5`. A number with nine
+ * decimals or more, which is written to the last digit, has four digits, or its whole part.
  */
-export const raised = (/** @type {string} */ text) => text.replace(/\^([23])/g, (_, exponent) => (exponent === "2" ? "²" : "³"))
-  .replace(/\d+\.\d{9,}(?!\d*e)/g, (number) => String(Number(Number(number).toPrecision(Math.max(4, number.indexOf("."))))))
-  .replace(/(?<![\w.]|\w-)(\d+(?:\.\d+)?)e([+-]?\d+)(?!\w)/g, (_, factor, exponent) => `${factor === "1" ? "" : `${factor}·`}${power(Number(exponent))}`)
-  .replace(/(?<=^|[\s(])-(?=\d)/g, "−");
+export const raised = (/** @type {string} */ text) =>
+  text
+    .replace(/\^([23])/g, (_, exponent) => (exponent === "2" ? "²" : "³"))
+    .replace(/\d+\.\d{9,}(?!\d*e)/g, (number) =>
+      String(Number(Number(number).toPrecision(Math.max(4, number.indexOf("."))))),
+    )
+    .replace(
+      /(?<![\w.]|\w-)(\d+(?:\.\d+)?)e([+-]?\d+)(?!\w)/g,
+      (_, factor, exponent) => `${factor === "1" ? "" : `${factor}·`}${power(Number(exponent))}`,
+    )
+    .replace(/(?<=^|[\s(])-(?=\d)/g, "−");
 
 /** `drawbar_pull` as words. */
 export const words = (/** @type {string} */ name) => name.replaceAll("_", " ");
 
 /** A sentence begins with a capital, unless it begins with a name of the program or a symbol. */
-export const capital = (/** @type {string} */ text) => (/^([a-z0-9]*_|[a-z]\d?(,| and | is | lies ))/.test(text) ? text : text.charAt(0).toUpperCase() + text.slice(1));
+export const capital = (/** @type {string} */ text) =>
+  /^([a-z0-9]*_|[a-z]\d?(,| and | is | lies ))/.test(text) ? text : text.charAt(0).toUpperCase() + text.slice(1);
 
 /** How names of parameters spell a unit at their end: `Pa/m` as `pa_m`, `1/m` as `per_m`, `kg/m^3` as `kg_m3`. */
-const spelt = (/** @type {string} */ unit) => unit.toLowerCase().replace(/^1\//, "per_").replaceAll("^", "").replace(/[^a-z0-9]+/g, "_");
+const spelt = (/** @type {string} */ unit) =>
+  unit
+    .toLowerCase()
+    .replace(/^1\//, "per_")
+    .replaceAll("^", "")
+    .replace(/[^a-z0-9]+/g, "_");
 
 /**
- * The name of a parameter as words, without the unit that it ends with before the name of a wheel, because the unit stands beside it;
- * whole where its unit is not known.
+ * The name of a parameter as words, without the unit that it ends with before the name of a wheel, because the unit
+ * stands beside it; whole where its unit is not known.
  * @param {string} name
  * @param {string | null | undefined} unit in SI
  */
 export function parameterName(name, unit) {
   const bare = unit && unit !== "1" ? name.replace(new RegExp(`_${spelt(unit)}(?=\\.[^.]*$|$)`), "") : name;
-  return bare.split(".").map((part) => translated(words(part))).join(": ");
+  return bare
+    .split(".")
+    .map((part) => translated(words(part)))
+    .join(": ");
 }
 
 /** A number that a person typed, with a point or a comma; null where it is none. */
 export function numberOf(/** @type {string} */ text) {
-  const plain = text.trim().replace("−", "-").replace(/^([^.,]*),([^.,]*)$/, "$1.$2");
+  const plain = text
+    .trim()
+    .replace("−", "-")
+    .replace(/^([^.,]*),([^.,]*)$/, "$1.$2");
   return plain === "" || !Number.isFinite(Number(plain)) ? null : Number(plain);
 }
 
 /** A short name of a channel. */
-export const short = (/** @type {string} */ channel) => SHORT[/** @type {keyof typeof SHORT} */ (channel)] ?? words(channel);
+export const short = (/** @type {string} */ channel) =>
+  SHORT[/** @type {keyof typeof SHORT} */ (channel)] ?? words(channel);
 
 /** The name of a channel. */
-export const channelName = (/** @type {string} */ channel) => NAMES[/** @type {keyof typeof NAMES} */ (channel)] ?? words(channel);
+export const channelName = (/** @type {string} */ channel) =>
+  NAMES[/** @type {keyof typeof NAMES} */ (channel)] ?? words(channel);
 
 /** The unit of a channel in SI. */
 export const unitOf = (/** @type {string} */ channel) => UNITS[/** @type {keyof typeof UNITS} */ (channel)] ?? "1";
@@ -99,7 +121,9 @@ function decimalsOf(/** @type {number} */ mean, /** @type {number} */ sd) {
 /** Values of a quantity to the second digit of its sd. */
 export function withSd(/** @type {(number | null)[]} */ values, /** @type {number} */ sd) {
   const decimals = decimalsOf(Math.max(...values.map((value) => Math.abs(value ?? 0))), sd);
-  return values.map((value) => (value === null || decimals === null ? digits(value, 4) : minus(value.toFixed(decimals))));
+  return values.map((value) =>
+    value === null || decimals === null ? digits(value, 4) : minus(value.toFixed(decimals)),
+  );
 }
 
 /** Mean and sd: both to the second digit of the sd. */

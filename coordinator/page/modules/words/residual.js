@@ -1,6 +1,9 @@
 // Residuals in the errors that a calibration assumes or infers.
 
-/** @typedef {"all" | "noise"} Errors all errors that a calibration assumes or infers, as its diagnosis judges residuals, or its noise alone */
+/**
+ * @typedef {"all" | "noise"} Errors all errors that a calibration assumes or infers, as its diagnosis judges residuals,
+ *   or its noise alone
+ */
 /** @typedef {{ error_sd?: number | null, noise_sd?: number | null }} Row of a comparison */
 
 /** The sd of a row's errors; null where it is not known. */

@@ -2,15 +2,20 @@
 
 import { t } from "../language/language.js";
 
-/** The error of a study's current model over the noise: on held-out runs where there are any. Studies without one stand last. */
-const errorOf = (/** @type {any} */ { error }, /** @type {number} */ sign) => sign * ((error?.holdout ?? error?.fit)?.all?.rmse_fixed_sigma ?? sign * Infinity);
+/**
+ * The error of a study's current model over the noise: on held-out runs where there are any. Studies without one stand
+ * last.
+ */
+const errorOf = (/** @type {any} */ { error }, /** @type {number} */ sign) =>
+  sign * ((error?.holdout ?? error?.fit)?.all?.rmse_fixed_sigma ?? sign * Infinity);
 
 /** @type {Record<string, (a: any, b: any) => number>} */
 export const ORDERS = {
   [t`newest first`]: (a, b) => b.id - a.id,
   [t`oldest first`]: (a, b) => a.id - b.id,
   [t`by name`]: (a, b) => String(a.name).localeCompare(String(b.name)) || b.id - a.id,
-  [t`by author`]: (a, b) => String(a.details.author ?? "\uffff").localeCompare(String(b.details.author ?? "\uffff")) || b.id - a.id,
+  [t`by author`]: (a, b) =>
+    String(a.details.author ?? "\uffff").localeCompare(String(b.details.author ?? "\uffff")) || b.id - a.id,
   [t`smallest error first`]: (a, b) => compared(errorOf(a, 1), errorOf(b, 1)) || b.id - a.id,
   [t`largest error first`]: (a, b) => compared(errorOf(a, -1), errorOf(b, -1)) || b.id - a.id,
 };
@@ -19,7 +24,21 @@ const compared = (/** @type {number} */ a, /** @type {number} */ b) => (a === b 
 
 /** What a study can be found by. */
 const textOf = (/** @type {any} */ study) =>
-  [study.name, `study ${study.id}`, study.state, study.model_kind, ...study.effects, study.details.author, ...study.details.tags, study.verdict?.short, study.models].filter(Boolean).join(" ").toLowerCase().replaceAll("_", " ");
+  [
+    study.name,
+    `study ${study.id}`,
+    study.state,
+    study.model_kind,
+    ...study.effects,
+    study.details.author,
+    ...study.details.tags,
+    study.verdict?.short,
+    study.models,
+  ]
+    .filter(Boolean)
+    .join(" ")
+    .toLowerCase()
+    .replaceAll("_", " ");
 
 /**
  * The studies that have every word, in an order.

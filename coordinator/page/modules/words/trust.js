@@ -26,7 +26,9 @@ function list(/** @type {string[]} */ names) {
  * @returns {Judgement[]}
  */
 export function judgements(line, diagnostics, wrong) {
-  return [sampler(line), residuals(diagnostics), priors(diagnostics), informed(diagnostics), predictions(wrong)].filter((one) => one !== null);
+  return [sampler(line), residuals(diagnostics), priors(diagnostics), informed(diagnostics), predictions(wrong)].filter(
+    (one) => one !== null,
+  );
 }
 
 /** @returns {Judgement | null} */
@@ -43,7 +45,9 @@ function residuals(/** @type {any} */ { channels }) {
   const judged = channels.filter((/** @type {any} */ c) => c.chi_square?.p !== null && c.chi_square?.p !== undefined);
   if (judged.length === 0) return null;
   const question = t`Do the assumed errors explain the residuals?`;
-  const beyond = judged.filter((/** @type {any} */ c) => c.chi_square.p < LEVEL).map((/** @type {any} */ c) => channelName(c.channel));
+  const beyond = judged
+    .filter((/** @type {any} */ c) => c.chi_square.p < LEVEL)
+    .map((/** @type {any} */ c) => channelName(c.channel));
   return beyond.length === 0
     ? { question, level: "good", text: t`in every channel (chi-square)` }
     : { question, level: "poor", text: t`not in ${list(beyond)}: something is missing, or the noise is understated` };
@@ -52,30 +56,68 @@ function residuals(/** @type {any} */ { channels }) {
 /** @returns {Judgement} */
 function priors(/** @type {any} */ { parameters }) {
   const question = t`Do the data agree with the priors?`;
-  const conflict = parameters.filter((/** @type {any} */ q) => q.conflict_p !== null && q.conflict_p < LEVEL).map(named);
+  const conflict = parameters
+    .filter((/** @type {any} */ q) => q.conflict_p !== null && q.conflict_p < LEVEL)
+    .map(named);
   const bound = parameters.filter((/** @type {any} */ q) => q.at_bound).map(named);
   if (conflict.length > 0) return { question, level: "poor", text: t`they contradict the prior of ${list(conflict)}` };
-  if (bound.length > 0) return { question, level: "fair", text: bound.length === 1 ? t`${list(bound)} lies at a bound of the prior: look whether it is meant` : t`${list(bound)} lie at a bound of the prior: look whether it is meant` };
+  if (bound.length > 0)
+    return {
+      question,
+      level: "fair",
+      text:
+        bound.length === 1
+          ? t`${list(bound)} lies at a bound of the prior: look whether it is meant`
+          : t`${list(bound)} lie at a bound of the prior: look whether it is meant`,
+    };
   return { question, level: "good", text: t`no parameter is far out in its prior` };
 }
 
 /** @returns {Judgement} */
 function informed(/** @type {any} */ { parameters }) {
   const question = t`Do the data determine the parameters?`;
-  const little = parameters.filter((/** @type {any} */ q) => q.contraction !== null && q.contraction < LITTLE).map(named);
+  const little = parameters
+    .filter((/** @type {any} */ q) => q.contraction !== null && q.contraction < LITTLE)
+    .map(named);
   return little.length === 0
     ? { question, level: "good", text: t`each is known better than before` }
-    : { question, level: "fair", text: little.length === 1 ? t`they tell little of ${list(little)}: its value is that of the prior` : t`they tell little of ${list(little)}: their values are those of the priors` };
+    : {
+        question,
+        level: "fair",
+        text:
+          little.length === 1
+            ? t`they tell little of ${list(little)}: its value is that of the prior`
+            : t`they tell little of ${list(little)}: their values are those of the priors`,
+      };
 }
 
 /** @returns {Judgement | null} */
 function predictions(/** @type {any} */ { channels }) {
   if (channels.length === 0) return null;
   const isHeldOut = channels.every((/** @type {any} */ c) => c.use === "holdout");
-  const question = isHeldOut ? t`Does it predict runs that it has not seen?` : t`Does it predict runs that it has not seen? No run was held out.`;
-  const beyond = channels.filter((/** @type {any} */ c) => c.is_judged && !c.is_within_noise).map((/** @type {any} */ c) => channelName(c.channel));
-  const open = channels.filter((/** @type {any} */ c) => !c.is_judged).map((/** @type {any} */ c) => channelName(c.channel));
-  if (beyond.length > 0) return { question, level: "poor", text: beyond.length === 1 ? t`${list(beyond)} is off by more than the noise` : t`${list(beyond)} are off by more than the noise` };
-  if (open.length > 0) return { question, level: "fair", text: t`${list(open)} cannot be judged: the noise is inferred with the misfit` };
-  return { question, level: isHeldOut ? "good" : "fair", text: isHeldOut ? t`to within the noise` : t`the fitted runs are within the noise; hold some out to know` };
+  const question = isHeldOut
+    ? t`Does it predict runs that it has not seen?`
+    : t`Does it predict runs that it has not seen? No run was held out.`;
+  const beyond = channels
+    .filter((/** @type {any} */ c) => c.is_judged && !c.is_within_noise)
+    .map((/** @type {any} */ c) => channelName(c.channel));
+  const open = channels
+    .filter((/** @type {any} */ c) => !c.is_judged)
+    .map((/** @type {any} */ c) => channelName(c.channel));
+  if (beyond.length > 0)
+    return {
+      question,
+      level: "poor",
+      text:
+        beyond.length === 1
+          ? t`${list(beyond)} is off by more than the noise`
+          : t`${list(beyond)} are off by more than the noise`,
+    };
+  if (open.length > 0)
+    return { question, level: "fair", text: t`${list(open)} cannot be judged: the noise is inferred with the misfit` };
+  return {
+    question,
+    level: isHeldOut ? "good" : "fair",
+    text: isHeldOut ? t`to within the noise` : t`the fitted runs are within the noise; hold some out to know`,
+  };
 }
