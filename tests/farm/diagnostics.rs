@@ -36,7 +36,7 @@ fn a_job_with_nothing_wrong_has_no_flag_and_says_what_it_knows() {
     assert_contains!(
         text,
         "every stage reached equilibrium",
-        "the declared errors explain the misfit",
+        "the assumed errors explain the misfit",
         "the data determine n least",
         "torque         slip_x_sled_speed"
     );

@@ -27,7 +27,7 @@ pub struct Flag {
 pub enum FlagKind {
     /// Residuals follow a condition of the runs.
     Trend,
-    /// Residuals are larger than the declared errors explain.
+    /// Residuals are larger than the assumed errors explain.
     Chi2,
     /// One residual is larger than chance allows.
     Outlier,

@@ -160,15 +160,15 @@ fn over<'a>(mut rows: impl Iterator<Item = &'a ComparisonRow>) -> &'static str {
     }
 }
 
-/// Counts extrapolated rows: ` (2 of 48 measurements are extrapolated)`; empty if there are none.
+/// Counts extrapolated rows: ` (46 measurements between the fitted conditions, 2 beyond them)`; empty if there are none.
 fn beyond<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> String {
     let is_beyond = rows.map(|row| row.interpolated_over == Some(InterpolatedOver::Extrapolation));
     let is_beyond: Vec<bool> = is_beyond.collect();
     match is_beyond.iter().filter(|beyond| **beyond).count() {
         0 => String::new(),
         beyond => format!(
-            " ({beyond} of {} are extrapolated)",
-            number::count(is_beyond.len(), "measurement")
+            " ({} between the fitted conditions, {beyond} beyond them)",
+            number::count(is_beyond.len() - beyond, "measurement")
         ),
     }
 }
@@ -177,7 +177,7 @@ fn beyond<'a>(rows: impl Iterator<Item = &'a ComparisonRow>) -> String {
 fn against(model: &ErrorTable, baseline: &ErrorTable) -> String {
     let mut groups: [(&str, Vec<String>); 3] = [
         ("does better in", vec![]),
-        ("does about as well in", vec![]),
+        ("differs by no more than chance in", vec![]),
         ("does worse in", vec![]),
     ];
     for channel in Channel::ALL {

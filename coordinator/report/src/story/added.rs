@@ -57,11 +57,11 @@ impl AddedEffect {
             text += &format!(" in the place of {replaced}");
         }
         if let Some([before, after]) = self.held_out_noise_sds {
-            text += &format!(
-                ": held-out error from {} to {} times the noise",
-                number::significant(before, 2),
-                number::significant(after, 2)
-            );
+            let [before, after] = [before, after].map(|sds| number::significant(sds, 2));
+            text += &match before == after {
+                true => format!(": held-out error unchanged, {after} times the noise"),
+                false => format!(": held-out error from {before} to {after} times the noise"),
+            };
         }
         match self.open_question() {
             Some(question) => format!("{text}; {question}"),
@@ -96,7 +96,8 @@ impl AddedEffect {
     }
 }
 
-/// Lists the effects that the study added to the model of a calibration, in the order of the model.
+/// Lists the effects that the study added to the model of a calibration: those of searches in the order of the searches, then the others,
+/// each in the order of the model.
 pub(crate) fn added(study: &Study, calibration: &FinishedCalibration) -> Vec<AddedEffect> {
     let had = study.lead.effects();
     let has = study.parts(calibration);
@@ -136,7 +137,7 @@ pub(crate) fn added(study: &Study, calibration: &FinishedCalibration) -> Vec<Add
         (position(&order, &effect_parts), effect)
     });
     found.extend(by_hand);
-    found.sort_by_key(|(position, _)| *position);
+    found.sort_by_key(|(position, effect)| (effect.searched.unwrap_or(i64::MAX), *position));
     found.into_iter().map(|(_, effect)| effect).collect()
 }
 
@@ -417,5 +418,12 @@ mod tests {
         let words = format!("held-out error from {} to", number::significant(before, 2));
         let text = Story::current(&study).missing.text;
         assert!(text.contains(&words), "{text}");
+        let mut effect = added(&study, &study.extensions[0]).remove(0);
+        effect.held_out_noise_sds = Some([38.2, 37.7]);
+        let text = effect.words();
+        assert!(
+            text.contains(": held-out error unchanged, 38 times the noise"),
+            "{text}"
+        );
     }
 }

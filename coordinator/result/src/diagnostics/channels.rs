@@ -58,17 +58,21 @@ pub struct ChiSquareTest {
 }
 
 impl ChiSquareTest {
-    /// Says how large the sum is and what it means, for example `the squares of 24 residuals sum to ...`.
+    /// Says how large the residuals are and what it means, for example `the 24 residuals are 1.7 times as large as the assumed errors ...`:
+    /// the square root of chi-square over its degrees of freedom.
     pub fn words(&self) -> String {
-        let size = format!(
-            "the squares of {} residuals sum to {} noise variances where {} are expected",
-            self.data,
-            number::significant(self.chi_square, 3),
-            number::significant(self.degrees_of_freedom, 3),
-        );
+        let (data, chi_square) = (self.data, number::significant(self.chi_square, 3));
         match self.p {
-            Some(p) => format!("{size} ({}): {}", p_words(p), judgement(p)),
-            None => format!("{size}: no degree of freedom is left for a test"),
+            Some(p) => format!(
+                "the {data} residuals are {} times as large as the assumed errors let expect (chi-square {chi_square} with {} degrees of freedom, {}): {}",
+                number::significant((self.chi_square / self.degrees_of_freedom).sqrt(), 2),
+                number::significant(self.degrees_of_freedom, 3),
+                p_words(p),
+                judgement(p)
+            ),
+            None => format!(
+                "the {data} residuals have a chi-square of {chi_square}, but no degree of freedom is left for a test"
+            ),
         }
     }
 }
@@ -80,13 +84,13 @@ const SUSPECT: f64 = 0.05;
 
 fn judgement(p: f64) -> &'static str {
     if p < LEVEL {
-        "more than the declared errors explain"
+        "more than the assumed errors explain"
     } else if p < SUSPECT {
-        "slightly more than the declared errors explain"
+        "slightly more than the assumed errors explain"
     } else if p > 1.0 - LEVEL {
-        "less than expected, the declared errors may be too large"
+        "less than expected, the assumed errors may be too large"
     } else {
-        "the declared errors explain the misfit"
+        "the assumed errors explain the misfit"
     }
 }
 
@@ -273,12 +277,12 @@ mod tests {
         };
         assert_eq!(
             test(Some(1e-5)).words(),
-            "the squares of 24 residuals sum to 61.5 noise variances where 21.0 are expected (p = 1e-5): more than the declared errors explain"
+            "the 24 residuals are 1.7 times as large as the assumed errors let expect (chi-square 61.5 with 21.0 degrees of freedom, p = 1e-5): more than the assumed errors explain"
         );
         for (p, ending) in [
-            (Some(0.4), "(p = 0.40): the declared errors explain the misfit"),
-            (Some(0.02), "slightly more than the declared errors explain"),
-            (Some(0.999), "the declared errors may be too large"),
+            (Some(0.4), "p = 0.40): the assumed errors explain the misfit"),
+            (Some(0.02), "slightly more than the assumed errors explain"),
+            (Some(0.999), "the assumed errors may be too large"),
             (None, "no degree of freedom is left for a test"),
         ] {
             assert!(test(p).words().ends_with(ending), "{ending}");
