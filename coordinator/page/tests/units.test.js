@@ -13,16 +13,16 @@ test("quantities are shown in the units that were chosen, and slips in per cent"
     ["N", "N m", "m", "Pa", "deg"].map((unit) => shown(unit).unit),
     ["lbf", "lbf ft", "in", "psi", "°"],
   );
-  assert.equal(size(44.482216152605, "N"), "10.0 lbf");
-  assert.equal(size(1.3558179483314, "N m"), "1.00 lbf ft");
-  assert.equal(size(0.0254, "m"), "1.00 in");
+  assert.equal(size(44.482216152605, "N"), "10,0 lbf");
+  assert.equal(size(1.3558179483314, "N m"), "1,00 lbf ft");
+  assert.equal(size(0.0254, "m"), "1,00 in");
   assert.deepEqual(
     CONDITIONS.map(({ unit }) => unit),
     ["%", "lbf", "in/s", "°"],
   );
   assert.equal(
     conditionWords({ slip: 0.3, wheel_load_n: 444.82216152605, sled_speed_m_s: 0.0254 }),
-    "Schlupf 30 %, 100 lbf, 1.00 in/s",
+    "Schlupf 30 %, 100 lbf, 1,00 in/s",
   );
 });
 

@@ -20,6 +20,8 @@ const CURVE = "monotone-x";
 const LOW = 150;
 /** The largest number of lines of several models that have bands; more bands would hide each other. */
 const MOST_BANDS = 8;
+/** More bands of a model are fainter: over each other they would be one grey. */
+const MOST_DENSE = 4;
 /** More levels are not named in the legend. */
 const MOST_NAMES = 10;
 
@@ -97,6 +99,7 @@ export function ChannelChart({
           .slice(0, MOST_NAMES)
           .map((k) => html`<${Entry} glyph=${html`<g fill="currentColor">${glyph(k)}</g>`}>${found.symbols[k]}<//>`);
   const hasHoldout = measured.some((r) => r.use === "holdout");
+  const isSingle = found.groups.some((group) => places(group.rows, (r) => r[axis.key]).length < LEAST_LINE);
   return html`
     <${Figure}
       title=${title}
@@ -114,6 +117,14 @@ export function ChannelChart({
           html`
             <${Entry} glyph=${html`<circle cx="8" cy="8" r="4" fill="none" stroke="currentColor" stroke-width="2" />`}>
               held out
+            <//>
+          `
+        }
+        ${
+          isSingle &&
+          html`
+            <${Entry} glyph=${html`<path d="M4 4l8 8M12 4L4 12" stroke="currentColor" stroke-width="1.6" />`}>
+              computed at a single condition
             <//>
           `
         }
@@ -276,7 +287,16 @@ function layerMarks(
     const means = atEqual(rows, x);
     if (means.length >= LEAST_LINE) {
       return [
-        ...(layer.hasBands ? [Plot.areaY(means, { ...band, curve: CURVE, fill: stroke, fillOpacity: 0.16 })] : []),
+        ...(layer.hasBands
+          ? [
+              Plot.areaY(means, {
+                ...band,
+                curve: CURVE,
+                fill: stroke,
+                fillOpacity: all.length > MOST_DENSE ? 0.08 : 0.16,
+              }),
+            ]
+          : []),
         Plot.lineY(means, {
           x,
           y: value("predicted"),

@@ -11,7 +11,7 @@ const GLYPHS = /** @type {Record<string, any>} */ ({
   star: html`<path d="M8 2l1.6 4h4l-3.2 2.6 1.2 4.2L8 10.4l-3.6 2.4 1.2-4.2L2.4 6h4z" />`,
   wye: html`<path d="M7 8L3 4l2-2 3 4 3-4 2 2-4 4v6H7z" />`,
   cross: html`<path d="M6 2h4v4h4v4h-4v4H6v-4H2V6h4z" />`,
-  times: html`<path d="M3 3l10 10M13 3L3 13" stroke-width="3" stroke="currentColor" />`,
+  hexagon: html`<path d="M8 3l4.3 2.5v5L8 13l-4.3-2.5v-5z" />`,
 });
 
 /** The symbol of the k-th series, as a picture has it. */

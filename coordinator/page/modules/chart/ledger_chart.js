@@ -101,7 +101,7 @@ function LedgerChart(/** @type {{ study: any, lines: LedgerLine[], channel: stri
           reached.length > 0 &&
           html`
             <${Entry} glyph=${html`<path d="M0 8h16" stroke="var(--prior)" stroke-dasharray="7 4" stroke-width="2" />`}>
-              interpolation, held out: ${reached.join(t`, then `)} ${quantity.unit}
+              interpolation and extrapolation, held out: ${reached.join(t`, then `)} ${quantity.unit}
             <//>
           `
         }

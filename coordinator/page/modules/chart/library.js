@@ -1,7 +1,13 @@
 // The libraries that draw: Observable Plot on D3, as vendored. They stand before the modules in the document.
 
+import { language } from "../language/language.js";
+
 export const Plot = /** @type {typeof import("@observablehq/plot")} */ (/** @type {any} */ (globalThis).Plot);
 export const d3 = /** @type {typeof import("d3")} */ (/** @type {any} */ (globalThis).d3);
+
+// Ticks have the decimal mark of the page: 2,000 is two for a German reader.
+if (language === "de")
+  d3?.formatDefaultLocale({ decimal: ",", thousands: "\u202f", grouping: [3], currency: ["", ""] });
 
 /** The type of every picture. */
 export const STYLE = { fontSize: "12px" };

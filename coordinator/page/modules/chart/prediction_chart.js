@@ -105,6 +105,12 @@ export function PredictionChart({ quantity, points, here, fitted, measured, name
           `
         }
         ${
+          measured.some((row) => row.use === "holdout") &&
+          html`
+            <${Entry} glyph=${html`<circle cx="8" cy="8" r="4" fill="none" stroke="var(--measured)" />`}>held out<//>
+          `
+        }
+        ${
           beyond.length > 0 &&
           html`
             <${Entry} glyph=${html`<rect y="2" width="16" height="12" fill="var(--rule)" opacity=".6" />`}>

@@ -6,7 +6,7 @@ import { channelName, digits, minus, shown, titled } from "../words/quantity.js"
 import { meanErrorSd } from "../words/residual.js";
 import { colour, symbol } from "./colour.js";
 import { spanWords } from "./condition.js";
-import { Figure, fileName } from "./figure.js";
+import { Entry, Figure, fileName } from "./figure.js";
 import { Plot, STYLE } from "./library.js";
 import { MANY } from "./merged.js";
 import { byRun, pointable } from "./runs.js";
@@ -101,7 +101,7 @@ export function ResidualChart({ channel, rows, axis, errors, trends, name }) {
     ? t`trend: ${minus(digits(trend.change * quantity.scale))} ${quantity.unit} from one end to the other, before the
       fit compensates`
     : trend
-      ? t`no trend beyond chance`
+      ? t`no trend of the fitted runs beyond chance`
       : "";
   return html`
     <${Figure}
@@ -120,12 +120,22 @@ export function ResidualChart({ channel, rows, axis, errors, trends, name }) {
         }))}
       onDrawn=${(/** @type {any} */ plot) =>
         pointable(plot, { runsIn, words: (from, to) => spanWords(axis, from, to) })}
-      legend=${
-        wheels.length > 1 &&
-        wheels.map(
-          (wheel, k) => html`<span><i class="swatch" style=${{ background: colour(k) }}></i>wheel ${wheel}</span>`,
-        )
-      }
+      legend=${html`
+        ${
+          wheels.length > 1 &&
+          wheels.map(
+            (wheel, k) => html`<span><i class="swatch" style=${{ background: colour(k) }}></i>wheel ${wheel}</span>`,
+          )
+        }
+        ${
+          judged.some((r) => r.use === "holdout") &&
+          html`
+            <${Entry} glyph=${html`<circle cx="8" cy="8" r="4" fill="none" stroke="currentColor" stroke-width="2" />`}>
+              held out
+            <//>
+          `
+        }
+      `}
     />
   `;
 }

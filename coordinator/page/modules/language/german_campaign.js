@@ -42,8 +42,6 @@ export const CAMPAIGN = {
   "More runs are not worth it:": "Weitere Fahrten lohnen nicht:",
   "must be calibrated again": "muss neu kalibriert werden",
   "new draws": "neue Ziehungen",
-  "No decision has been asked for. The table [decision] of a job states one, and so does a file.":
-    "Es wurde noch keine Entscheidung angefragt. Die Tabelle [decision] eines Jobs nennt eine, und eine Datei auch.",
   "No further run is worth its cost.": "Keine weitere Fahrt ist ihre Kosten wert.",
   "No option keeps all constraints.": "Keine Möglichkeit hält alle Bedingungen ein.",
   "One more run is worth its cost before the decision: {0}.":

@@ -83,8 +83,6 @@ export const SENTENCES = {
   "Errors that residuals count in": "Fehler, in denen Abweichungen zählen",
   "all errors": "alle Fehler",
   "the noise alone": "das Rauschen allein",
-  "Nats: log evidence over that of the model as it is. Bold lines are in the 95 % set of explanations. Half of the prior probability is on “nothing is missing”.{0}":
-    "Nat: logarithmische Evidenz über der des Modells, wie es ist. Fette Zeilen gehören zur 95-%-Menge der Erklärungen. Die Hälfte der Prior-Wahrscheinlichkeit liegt auf „nichts fehlt“.{0}",
   "No calibration of this study is finished yet.": "Noch ist keine Kalibrierung dieser Studie fertig.",
   "No run within reach of the rig would change these probabilities by much.":
     "Keine Fahrt in Reichweite des Prüfstands würde diese Wahrscheinlichkeiten viel ändern.",
@@ -172,8 +170,6 @@ export const SENTENCES = {
   "tries the model without each of its effects": "versucht das Modell ohne jeden seiner Effekte",
   "whether something is missing is undecided": "ob etwas fehlt, ist nicht entschieden",
   "Without grousers, leave their fields blank.": "Ohne Stollen bleiben deren Felder leer.",
-  "would predict for the fitted runs, from the search's fit. Nothing has been computed anew.":
-    "für die angepassten Fahrten vorhersagen würde, nach der Anpassung der Suche. Nichts wurde neu gerechnet.",
   "{0} cannot be judged: the noise is inferred with the misfit":
     "{0} nicht zu beurteilen: das Rauschen wird mit der Abweichung geschätzt",
   "{0} depends on {1} ({2}), {3} nats over the model as it is.":
@@ -201,4 +197,29 @@ export const SENTENCES = {
   "says why, and what to do.": "sagt, warum, und was zu tun ist.",
   "The study was cancelled before a calibration had finished.":
     "Die Studie wurde abgebrochen, bevor eine Kalibrierung fertig war.",
+  "{0}; more is missing": "{0}; es fehlt noch mehr",
+  "{0}; what else is missing is undecided": "{0}; was sonst noch fehlt, ist unentschieden",
+  "dot above: held out": "Punkt darüber: zurückgehalten",
+  "Take back this calibration": "Diese Kalibrierung zurücknehmen",
+  "Take back what was added last": "Zuletzt Hinzugefügtes zurücknehmen",
+  "Errors, interpolation and intervals, in sentences": "Fehler, Interpolation und Intervalle in Sätzen",
+  "What was assumed, and what is doubtful": "Was angenommen wurde, und was zweifelhaft ist",
+  "computed at a single condition": "bei einer einzelnen Bedingung berechnet",
+  "interpolation and extrapolation, held out: {0} {1}": "Inter- und Extrapolation, zurückgehalten: {0} {1}",
+  "no trend of the fitted runs beyond chance": "kein Trend der angepassten Fahrten, der über Zufall hinausgeht",
+  "No decision has been asked for.": "Es wurde noch keine Entscheidung angefragt.",
+  "only with errors that are inferred from the residuals themselves, up to {0} times the noise: {1}":
+    "nur mit Fehlern, die aus den Abweichungen selbst geschätzt sind, bis zum {0}-Fachen des Rauschens: {1}",
+  "No decision has been asked for. Name the options, such as two wheels or three ways up a slope, and the loss of each: the answer says which is best, how sure that is, and what one more run is worth. The example below compares climbing a slope with staying.":
+    "Es wurde noch keine Entscheidung angefragt. Nennen Sie die Möglichkeiten, etwa zwei Räder oder drei Wege einen Hang hinauf, und den Verlust einer jeden: die Antwort sagt, welche die beste ist, wie sicher das ist und was eine weitere Fahrt wert ist. Das Beispiel unten vergleicht den Aufstieg mit dem Bleiben.",
+  ": the dashed curves are what it would predict for the fitted runs, from the search's fit. Nothing has been computed anew.":
+    ": die gestrichelten Kurven sind, was es für die angepassten Fahrten vorhersagen würde, nach der Anpassung der Suche. Nichts wurde neu gerechnet.",
+  "Nats: log evidence over that of the model as it is. Bold lines: the classes of explanations that have 95 % of the probability together; these data cannot tell the members of a class apart. Half of the prior probability is on “nothing is missing”.{0}":
+    "Nat: logarithmische Evidenz über der des Modells, wie es ist. Fette Zeilen: die Klassen von Erklärungen, die zusammen 95 % der Wahrscheinlichkeit haben; die Mitglieder einer Klasse können diese Daten nicht unterscheiden. Die Hälfte der Prior-Wahrscheinlichkeit liegt auf „nichts fehlt“.{0}",
+  "Current, corrected: the current model and what it misses at the fitted conditions, interpolated.":
+    "Aktuell, korrigiert: das aktuelle Modell und, interpoliert, was ihm bei den angepassten Bedingungen fehlt.",
+  "All, combined: the corrected models together, weighed by how well each predicts the fitted runs.":
+    "Alle, kombiniert: die korrigierten Modelle zusammen, gewichtet danach, wie gut jedes die angepassten Fahrten vorhersagt.",
+  "Interpolation: the fitted measurements without any model, extrapolated beyond them, on the runs where that is possible.":
+    "Interpolation: die angepassten Messungen ohne ein Modell, jenseits davon extrapoliert, bei den Fahrten, wo das möglich ist.",
 };

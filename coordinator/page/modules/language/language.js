@@ -36,6 +36,18 @@ export function t(texts, ...parts) {
 /** A text of the service, such as a state or what an effect does, where the catalogue has it. */
 export const translated = (/** @type {string} */ text) => catalogue?.[text] ?? text;
 
+const service = language === "de" ? await import("./german_service.js") : null;
+
+/** A sentence of the service in the language of the page; in English where that has no words for it. */
+export function told(/** @type {string} */ text) {
+  const found = service?.germanOf(text);
+  return found === null || found === undefined ? text : decimal(found);
+}
+
+/** A text with the decimal marks of the language of the page. */
+export const decimal = (/** @type {string} */ text) =>
+  language === "de" ? text.replace(/(\d)\.(?=\d)/g, "$1,") : text;
+
 /** The place of a part that varies, within the text of a template. */
 const MARK = /\0(\d+)\0/g;
 /** Attributes that are read to people. */

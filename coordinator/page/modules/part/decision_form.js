@@ -17,8 +17,8 @@ name = "stay"
 loss = "60"
 `;
 
-/** @param {{ id: number, onDecided: (answer: any) => void }} properties */
-export function DecisionForm({ id, onDecided }) {
+/** @param {{ id: number, isOpen: boolean, onDecided: (answer: any) => void }} properties */
+export function DecisionForm({ id, isOpen, onDecided }) {
   const [text, setText] = useState(EXAMPLE);
   const [failure, setFailure] = useState(/** @type {any} */ (null));
   const [isBusy, setBusy] = useState(false);
@@ -39,7 +39,7 @@ export function DecisionForm({ id, onDecided }) {
     event.target.value = "";
   };
   return html`
-    <details>
+    <details open=${isOpen}>
       <summary>Decide by a file</summary>
       <form onSubmit=${send}>
         <p><label>A file with a table [decision] <input type="file" accept=".toml" onChange=${chosen} /></label></p>

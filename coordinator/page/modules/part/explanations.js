@@ -4,8 +4,9 @@ import { html, useState } from "../html.js";
 import { t, translated } from "../language/language.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
+import { said } from "../words/clauses.js";
 import { parameterValue, shownParameter } from "../words/parameter.js";
-import { capital, digits, minus, parameterName, probability, raised, words } from "../words/quantity.js";
+import { capital, digits, minus, parameterName, probability, words } from "../words/quantity.js";
 import { additionOf, TakeBack } from "./take_back.js";
 import { few } from "../words/few.js";
 
@@ -16,7 +17,7 @@ const ZERO = 1e-12;
  * stay in view.
  */
 const FIRST = 8;
-export const OTHERS = /** @type {Record<string, string>} */ ({
+const OTHERS = /** @type {Record<string, string>} */ ({
   none: t`nothing is missing`,
   not_in_library: t`a law that is not in the library`,
 });
@@ -28,25 +29,20 @@ export const OTHERS = /** @type {Record<string, string>} */ ({
  */
 export function Explanations({ record, unchanged, ghost, kept, show, keep, add, study, model, isBusy, reload }) {
   const [asked, setAsked] = useState(/** @type {string | null} */ (null));
-  const { answer: catalogue } = useAnswer(path.effects);
+  const titleOf = useTitles(model);
   const [isAll, setAll] = useState(false);
   const effects = isAll ? record.effects : record.effects.slice(0, FIRST);
-  const summaries = new Map((catalogue ?? []).map((/** @type {any} */ e) => [e.name, e.summary]));
-  const told = new Map(model.story.missing.leading.map((/** @type {any} */ e) => [e.name, e.summary]));
-  // A report carries the story, and no catalogue.
-  const summaryOf = (/** @type {string} */ name) => summaries.get(name.split(".")[0]) ?? told.get(name);
   const made = new Set(
     study.members
       .filter((/** @type {any} */ m) => m.kind !== "search")
       .map((/** @type {any} */ m) => m.effects.join(" ")),
   );
   const isMade = (/** @type {string} */ name) => made.has([...model.effects, name].join(" "));
-  const titleOf = (/** @type {string} */ name) => capital(OTHERS[name] ?? translated(summaryOf(name) ?? words(name)));
   const untried = new Map(record.not_tried.map((/** @type {any} */ e) => [e.name, e.why]));
   const notesOn = (/** @type {any} */ effect) => {
     const like = likeOf(record.effects, effect);
     const isOpen = like.length > 0 ? t`these data cannot tell it from ${few(like)}` : null;
-    return [raised(untried.get(effect.name) ?? ""), isOpen].filter(Boolean).join("; ");
+    return [said(untried.get(effect.name) ?? ""), isOpen].filter(Boolean).join("; ");
   };
   return html`
     <div class="scroll" tabindex="0" role="region" aria-label="Explanations">
@@ -166,15 +162,25 @@ export function Explanations({ record, unchanged, ghost, kept, show, keep, add, 
       `
     }
     <p class="note">
-      Nats: log evidence over that of the model as it is. Bold lines are in the 95 % set of explanations. Half of the
-      prior probability is on “nothing is
-      missing”.${
+      Nats: log evidence over that of the model as it is. Bold lines: the classes of explanations that have 95 % of the
+      probability together; these data cannot tell the members of a class apart. Half of the prior probability is on
+      “nothing is missing”.${
         add &&
         t` Add calibrates a further model with the effect; this one stays as it is, and what was added can be taken
           back.`
       }
     </p>
   `;
+}
+
+/** What an explanation says, by its name: `Shear stress needs displacement along the rim to build up`. */
+export function useTitles(/** @type {any} */ model) {
+  const { answer: catalogue } = useAnswer(path.effects);
+  const summaries = new Map((catalogue ?? []).map((/** @type {any} */ e) => [e.name, e.summary]));
+  const told = new Map((model?.story?.missing.leading ?? []).map((/** @type {any} */ e) => [e.name, e.summary]));
+  // A report carries the story, and no catalogue.
+  const summaryOf = (/** @type {string} */ name) => summaries.get(name.split(".")[0]) ?? told.get(name);
+  return (/** @type {string} */ name) => capital(OTHERS[name] ?? translated(summaryOf(name) ?? words(name)));
 }
 
 /** Nats to a digit after the point, without a sign before 0. */

@@ -2,8 +2,9 @@
 
 import { html } from "../html.js";
 import { t } from "../language/language.js";
+import { said } from "../words/clauses.js";
 import { modelName } from "../words/model.js";
-import { capital, raised, words } from "../words/quantity.js";
+import { capital, words } from "../words/quantity.js";
 
 /** @param {{ study: any }} properties */
 export function Flags({ study }) {
@@ -97,5 +98,5 @@ function List({ flags, model }) {
 
 /** The text of a flag as people write numbers, without the name of the model that it begins with. */
 export function flagWords(/** @type {string} */ text, /** @type {string | undefined} */ model) {
-  return raised(model !== undefined && text.startsWith(`${model}: `) ? text.slice(model.length + 2) : text);
+  return said(model !== undefined && text.startsWith(`${model}: `) ? text.slice(model.length + 2) : text);
 }

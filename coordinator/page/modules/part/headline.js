@@ -57,7 +57,11 @@ export function Headline({ study, model, reload }) {
         ${
           !isReport &&
           isAddition(study, model) &&
-          html`<p><${TakeBack} study=${study} id=${model.id} reload=${reload} /></p>`
+          html`
+            <p>
+              <${TakeBack} study=${study} id=${model.id} label=${t`Take back what was added last`} reload=${reload} />
+            </p>
+          `
         }
       </div>
       ${

@@ -3,7 +3,7 @@
 
 import { html, useState } from "../html.js";
 import { MEANINGS, words as inWords } from "../import_map.js";
-import { t } from "../language/language.js";
+import { t, told } from "../language/language.js";
 
 /** @typedef {import("../import_map.js").Skipped} Skipped */
 
@@ -15,7 +15,7 @@ export function Mistake({ complaint, field, onSkip }) {
   const isSkipped = complaint.fix === "skip" && complaint.line !== null;
   return html`
     <div class="error" data-field=${field}>
-      ${inWords(complaint)}
+      ${told(inWords(complaint))}
       ${
         isSkipped &&
         html`

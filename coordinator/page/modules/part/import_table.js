@@ -4,7 +4,7 @@
 import { save } from "../chart/download.js";
 import { html, useEffect, useMemo, useState } from "../html.js";
 import { byField, mapOf, meaningsOf, proposed, withAgain, without } from "../import_map.js";
-import { t } from "../language/language.js";
+import { t, told } from "../language/language.js";
 import { guessImport, importTable } from "../rest/routes.js";
 import { FilledDown, Meanings, Mistake, SkippedRows } from "./import_fix.js";
 import { Failure } from "./message.js";
@@ -180,7 +180,7 @@ export function ImportTable({ name, bytes, onFiles, onRemove }) {
         onTake=${(/** @type {number} */ line) => setChoices(withAgain(choices, line))}
       />
       <${Failure} error=${failure} />
-      ${(answer?.remarks ?? []).map((/** @type {string} */ remark) => html`<p class="note">${remark}</p>`)}
+      ${(answer?.remarks ?? []).map((/** @type {string} */ remark) => html`<p class="note">${told(remark)}</p>`)}
       <div class="actions">
         <button
           class="main"
@@ -223,6 +223,7 @@ function cells(
   const absent =
     ABSENT[field.name] ?? (choice.formula !== "" ? choice.formula : field.is_needed ? t`(none)` : t`(not measured)`);
   const isOpen = choice.unit === "" && (choice.column !== null || choice.value !== "");
+  const words = told(field.words);
   const fillDown = complaints.some((complaint) => complaint.fix === "fill_down")
     ? () => onChange({ fillsDown: true })
     : null;
@@ -237,14 +238,14 @@ function cells(
   };
   return [
     html`
-      ${field.words}
+      ${words}
       ${complaints.map((complaint) => html`<${Mistake} complaint=${complaint} field=${field.name} onSkip=${onSkip} />`)}
       ${fillDown && html`<button type="button" onClick=${fillDown}>Blank cells have the value above</button>`}
     `,
     html`
       <div>
         <select
-          aria-label=${t`column of ${field.words}`}
+          aria-label=${t`column of ${words}`}
           aria-invalid=${complaints.length > 0}
           value=${choice.column ?? ""}
           onChange=${(/** @type {any} */ e) => take(e.target.value)}
@@ -255,10 +256,7 @@ function cells(
               html`<option value=${column.name} selected=${choice.column === column.name}>${column.title}</option>`,
           )}
         </select>
-        ${
-          choice.fillsDown &&
-          html`<${FilledDown} words=${field.words} onUndo=${() => onChange({ fillsDown: false })} />`
-        }
+        ${choice.fillsDown && html`<${FilledDown} words=${words} onUndo=${() => onChange({ fillsDown: false })} />`}
         <${Meanings}
           words=${choice.words}
           onChange=${(/** @type {Record<string, string>} */ words) => onChange({ words })}
@@ -269,7 +267,7 @@ function cells(
       ? ""
       : html`
           <select
-            aria-label=${t`unit of ${field.words}`}
+            aria-label=${t`unit of ${words}`}
             aria-invalid=${isOpen}
             value=${choice.unit}
             onChange=${(/** @type {any} */ e) => onChange({ unit: e.target.value })}
@@ -286,7 +284,7 @@ function cells(
       : html`
           <input
             size="10"
-            aria-label=${t`${field.words} of all rows`}
+            aria-label=${t`${words} of all rows`}
             value=${choice.value}
             onInput=${(/** @type {any} */ e) => onChange({ value: e.target.value })}
           />

@@ -3,7 +3,8 @@
 import { html } from "../html.js";
 import { t } from "../language/language.js";
 import { meanAndSpread, shownParameter } from "../words/parameter.js";
-import { capital, digits, duration } from "../words/quantity.js";
+import { said, sentence } from "../words/clauses.js";
+import { digits, duration } from "../words/quantity.js";
 import { Table } from "./table.js";
 
 /** @param {{ answer: import("../rest/routes.js").Schemas["JobCheck"] }} properties */
@@ -14,7 +15,7 @@ export function JobCheck({ answer }) {
       <h2>What the job will do</h2>
       ${answer.models.map((model) => html`<${Model} model=${model} />`)}
       ${
-        notes.length > 0 && html`<h3>Good to know</h3><ul>${notes.map((note) => html`<li>${capital(note)}.</li>`)}</ul>`
+        notes.length > 0 && html`<h3>Good to know</h3><ul>${notes.map((note) => html`<li>${sentence(note)}</li>`)}</ul>`
       }
     </section>
   `;
@@ -44,7 +45,7 @@ function Model(/** @type {{ model: import("../rest/routes.js").Schemas["CheckedM
       model.cost &&
       html`
         <p class="note">
-          ${model.cost.pilot}
+          ${said(model.cost.pilot)}
           ${
             model.cost.rejected_share > 0.005
               ? ` ${t`The model rejected ${Math.round(100 * model.cost.rejected_share)} % of its parameter vectors.`}`

@@ -63,14 +63,14 @@ function SetLedger({ study, lines, label }) {
         return row(use === "fit" ? name : "", use, line.error[use], line.coverage90?.[use], evidence);
       }),
   );
-  for (const [name, of] of beside(study, lines)) {
-    if (of?.holdout) rows.push(row(name, "holdout", of.holdout, of.coverage90?.holdout));
-  }
+  const besides = beside(study, lines).filter(([, of]) => of?.holdout);
+  for (const [name, of] of besides) rows.push(row(name, "holdout", of.holdout, of.coverage90?.holdout));
   const isByWidth = lines.some(({ line }) =>
     /** @type {const} */ (["fit", "holdout"]).some((use) => isInsideByWidth(line.error[use], line.coverage90?.[use])),
   );
   return html`
     <${Table} label=${label} head=${head} rows=${rows} numbers=${head.map((_, k) => k).filter((k) => k > 1)} />
+    ${besides.length > 0 && html`<p class="note">${besides.map(([, , words]) => words).join(" ")}</p>`}
     ${
       isByWidth &&
       html`
@@ -90,13 +90,26 @@ function isInsideByWidth(/** @type {any} */ error, /** @type {number | null | un
   return Boolean(error) && inside === 1 && (error.all.rmse_fixed_sigma ?? 0) > LARGE;
 }
 
-/** What predicts held-out runs beside the models as they are, among the lines with the current model. */
+/** What predicts held-out runs beside the models as they are, among the lines with the current model; what it is. */
 function beside(/** @type {any} */ study, /** @type {any[]} */ lines) {
   const current = lines.find((own) => own.id === study.current)?.line;
   const combined = current && study.combined?.models > 1 ? study.combined : null;
-  return /** @type {[string, any][]} */ ([
-    [t`current, corrected`, current?.corrected],
-    [t`all, combined`, combined],
-    [t`interpolation`, current?.baseline],
+  return /** @type {[string, any, string][]} */ ([
+    [
+      t`current, corrected`,
+      current?.corrected,
+      t`Current, corrected: the current model and what it misses at the fitted conditions, interpolated.`,
+    ],
+    [
+      t`all, combined`,
+      combined,
+      t`All, combined: the corrected models together, weighed by how well each predicts the fitted runs.`,
+    ],
+    [
+      t`interpolation`,
+      current?.baseline,
+      t`Interpolation: the fitted measurements without any model, extrapolated beyond them, on the runs where that is
+        possible.`,
+    ],
   ]);
 }

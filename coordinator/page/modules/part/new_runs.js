@@ -135,8 +135,8 @@ export function NewRuns({ study, model, record, comparison, reload, follow, furt
               ${rigs.length > 1 && html`<th scope="col">wheel</th>`}
               <th scope="col">${titled(t`slip`, slipUnit.unit)}</th>
               <th scope="col">${titled(t`load`, shown("N").unit)}</th>
-              <th scope="col">${titled(t`speed`, shown("m/s").unit)}</th>
-              ${isAngled && html`<th scope="col">slip angle °</th>`}
+              <th scope="col">${titled(t`sled speed`, shown("m/s").unit)}</th>
+              ${isAngled && html`<th scope="col">${titled(t`slip angle`, "°")}</th>`}
               ${channels.map((c) => html`<th scope="col">${titled(short(c), unit(c).unit)}</th>`)}
             </tr>
           </thead>

@@ -3,7 +3,7 @@
 
 import { html } from "../html.js";
 import { t, translated } from "../language/language.js";
-import { raised } from "../words/quantity.js";
+import { said } from "../words/clauses.js";
 
 /** Names without `EFFECT.WHEEL` where `EFFECT` is in the list. */
 function folded(/** @type {string[]} */ names) {
@@ -33,7 +33,7 @@ export function NotTried({ record }) {
           ${[...untried.values()].map(
             (same) => html`
               <li>
-                <b>${folded(same.names).join(", ")}</b>: ${raised(same.why)}.${" "}
+                <b>${folded(same.names).join(", ")}</b>: ${said(same.why)}.${" "}
                 ${
                   same.needs.startsWith("runs ")
                     ? t`To be measured: ${translated(same.needs)}.`

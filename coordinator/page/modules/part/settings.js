@@ -1,7 +1,7 @@
 // Language and units of the page: kept in this browser.
 
 import { html } from "../html.js";
-import { choose, language, LANGUAGES, t } from "../language/language.js";
+import { choose, decimal, language, LANGUAGES, t } from "../language/language.js";
 import { chosenUnits, SLIPS, UNIT_SETS } from "../units.js";
 
 export function Settings() {
@@ -19,7 +19,7 @@ export function Settings() {
       </select>
       <select aria-label="Slip as" onChange=${(/** @type {any} */ e) => chosenUnits.chooseSlip(e.target.value)}>
         ${options(
-          SLIPS.map((slip) => /** @type {[string, string]} */ ([slip, t`slip ${slip}`])),
+          SLIPS.map((slip) => /** @type {[string, string]} */ ([slip, t`slip ${decimal(slip)}`])),
           chosenUnits.slip,
         )}
       </select>

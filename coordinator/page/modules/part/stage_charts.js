@@ -17,6 +17,8 @@ const CURVES = [
 export function StageCharts({ stages, name }) {
   let evidence = 0;
   const rows = stages.map((stage) => ({ ...stage, evidence: (evidence += stage.log_evidence_increment) }));
+  const powers = rows.map((row) => Math.floor(Math.log10(row.tempering_exponent))).filter(Number.isFinite);
+  const tens = [...new Set(powers)].map((power) => 10 ** power);
   const step = Math.ceil(rows.length / 6);
   const ticks = rows.map((row) => row.stage).filter((stage) => stage % step === 0);
   return html`
@@ -42,7 +44,7 @@ export function StageCharts({ stages, name }) {
                   label: null,
                   type: /** @type {any} */ (type),
                   grid: type === "linear",
-                  ticks: 4,
+                  ticks: type === "log" && tens.length > 1 ? tens : 4,
                   zero: key === "acceptance",
                   ...(type === "log" ? { tickFormat: (/** @type {number} */ v) => digits(v, 1) } : {}),
                 },

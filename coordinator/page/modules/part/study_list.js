@@ -25,6 +25,7 @@ export function StudyList({ studies }) {
           <label>
             Find <input
               type="search"
+              size="26"
               value=${text}
               placeholder="name, author, tag, effect"
               onInput=${(/** @type {any} */ e) => setText(e.target.value)}

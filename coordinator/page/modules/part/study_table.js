@@ -3,6 +3,7 @@
 import { html } from "../html.js";
 import { t, translated } from "../language/language.js";
 import { address } from "../route.js";
+import { clauses, said, sentence } from "../words/clauses.js";
 import { capital, CHANNELS, errorWords, short, shown, titled, unitOf, words } from "../words/quantity.js";
 import { progressWords } from "../words/state.js";
 import { Tags } from "./study_details.js";
@@ -30,18 +31,18 @@ function foundBy(/** @type {any} */ study) {
   if (study.failure)
     return html`
       <div class="found">
-        ${capital(study.failure.reason.split(" (")[0])}.${" "}
-        <div class="note"><b>What to do:</b> ${study.failure.advice}.</div>
+        ${sentence(study.failure.reason.split(" (")[0])}
+        <div class="note"><b>What to do:</b> ${said(study.failure.advice)}.</div>
       </div>
     `;
-  const found =
-    study.verdict?.short ?? study.models?.split(" (")[0] ?? (study.state === "finished" ? t`no search yet` : "");
+  const told = study.verdict?.short ?? study.models?.split(" (")[0];
+  const found = told ? clauses(told).map(said).join("; ") : study.state === "finished" ? t`no search yet` : "";
   return (
     found &&
     html`
       <div class="found">
         ${capital(found)}
-        ${study.verdict?.open && html`<div class="note">${study.verdict.open}</div>`}
+        ${study.verdict?.open && html`<div class="note">${said(study.verdict.open)}</div>`}
       </div>
     `
   );
@@ -73,7 +74,7 @@ export function StudyTable({ studies, choose }) {
       <div class="note">
         study ${study.id}${study.archived ? t`, archived` : ""}${
           study.details.author && `, ${study.details.author}`
-        } <${Day} ms=${study.created_ms} />
+        }${study.created_ms !== null && ", "}<${Day} ms=${study.created_ms} />
       </div>
       ${study.details.tags.length > 0 && html`<div><${Tags} tags=${study.details.tags} choose=${choose} /></div>`}
     `,

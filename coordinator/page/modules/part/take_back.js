@@ -2,12 +2,16 @@
 // computed anew.
 
 import { html, useState } from "../html.js";
+import { t } from "../language/language.js";
 import { withdraw } from "../rest/routes.js";
 import { address } from "../route.js";
 import { Failure } from "./message.js";
 
-/** @param {{ study: any, id: number, reload?: () => void }} properties id: of the calibration that was added */
-export function TakeBack({ study, id, reload }) {
+/**
+ * @param {{ study: any, id: number, label?: string, reload?: () => void }} properties id: of the calibration that was
+ *   added
+ */
+export function TakeBack({ study, id, label = t`Take back`, reload }) {
   const [isAsked, setAsked] = useState(false);
   const [failure, setFailure] = useState(/** @type {any} */ (null));
   const take = async () => {
@@ -30,7 +34,7 @@ export function TakeBack({ study, id, reload }) {
               <button type="button" onClick=${take}>Take it back</button>
               <button type="button" onClick=${() => setAsked(false)}>Keep it</button>
             `
-          : html`<button type="button" onClick=${() => setAsked(true)}>Take back</button>`
+          : html`<button type="button" onClick=${() => setAsked(true)}>${label}</button>`
       }
       <${Failure} error=${failure} />
     </span>

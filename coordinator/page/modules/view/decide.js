@@ -40,7 +40,13 @@ export function Decide({ study, model }) {
         : !error &&
           html`
             <p class="empty">
-              No decision has been asked for. The table [decision] of a job states one, and so does a file.
+              ${
+                isReport
+                  ? t`No decision has been asked for.`
+                  : t`No decision has been asked for. Name the options, such as two wheels or three ways up a slope, and
+                    the loss of each: the answer says which is best, how sure that is, and what one more run is worth.
+                    The example below compares climbing a slope with staying.`
+              }
             </p>
           `
     }
@@ -49,6 +55,7 @@ export function Decide({ study, model }) {
       html`
         <${DecisionForm}
           id=${model.id}
+          isOpen=${!decision}
           onDecided=${(/** @type {Decision} */ answer) => setKnown({ decision: answer, error: null })}
         />
       `

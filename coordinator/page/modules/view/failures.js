@@ -15,13 +15,16 @@ import { NoModel } from "../part/no_model.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { conditionWords, runName } from "../words/condition.js";
-import { capital, CHANNELS, minus, raised, short } from "../words/quantity.js";
-import { hasErrorsBesideNoise, residualSds } from "../words/residual.js";
+import { said } from "../words/clauses.js";
+import { capital, CHANNELS, minus, short } from "../words/quantity.js";
+import { hasErrorsBesideNoise, hasOnlyNoise, residualSds } from "../words/residual.js";
 
 /** Number of sds beyond which residuals have one colour. */
 const MOST_SDS = 4;
 /** Number of colour steps per sd in a picture of many cells. */
 const STEPS = 4;
+/** Height of a cell [px]. */
+const CELL = 30;
 /** Names of runs stand under cells of this width [px] at least. */
 const LEAST_CELL = 14;
 /** Height of one character of a slanted name below the axis [px]. */
@@ -51,6 +54,8 @@ export function Failures({ study, model }) {
   ];
   const axis = axes.find((a) => a.key === order) ?? MADE;
   const findings = diagnostics?.findings ?? [];
+  // All errors of a calibration may be its noise alone.
+  const named = hasOnlyNoise(rows) ? "noise" : errors;
   return html`
     ${model.story && html`<div class="verdict"><${Clauses} text=${model.story.wrong.text} /></div>`}
     <div class="actions" role="group" aria-label="Ordered by">
@@ -75,11 +80,11 @@ export function Failures({ study, model }) {
         </div>
       `
     }
-    <${HeatMap} rows=${rows} order=${order} errors=${errors} name=${study.name} />
+    <${HeatMap} rows=${rows} order=${order} errors=${errors} named=${named} name=${study.name} />
     <h2>Residuals against ${axis.title}</h2>
     <p class="note">
       ${
-        errors === "all"
+        named === "all"
           ? t`Measured less computed; the grey band is one sd, the mean over the runs, of all errors that the
             calibration assumes or infers: noise, scatter of the soil and discrepancy, as in the diagnosis.`
           : t`Measured less computed; the grey band is one sd, the mean over the runs, of the noise alone.`
@@ -105,7 +110,7 @@ export function Failures({ study, model }) {
       findings.length > 0 &&
       html`
         <h2>What the diagnosis says</h2>
-        <ul>${findings.map((/** @type {string} */ text) => html`<li>${capital(raised(text))}</li>`)}</ul>
+        <ul>${findings.map((/** @type {string} */ text) => html`<li>${capital(said(text))}</li>`)}</ul>
       `
     }
   `;
@@ -128,9 +133,10 @@ function withPlace(/** @type {any[]} */ rows) {
 
 /**
  * Runs by channels, coloured by the residual over its sd.
- * @param {{ rows: any[], order: string, errors: "all" | "noise", name: string }} properties
+ * @param {{ rows: any[], order: string, errors: "all" | "noise", named: "all" | "noise",
+ *   name: string }} properties
  */
-function HeatMap({ rows, order, errors, name }) {
+function HeatMap({ rows, order, errors, named, name }) {
   const judged = rows
     .map((r) => ({ ...r, sds: residualSds(r, errors), all_sds: residualSds(r, "all") }))
     .filter((r) => r.sds !== null);
@@ -139,6 +145,7 @@ function HeatMap({ rows, order, errors, name }) {
   for (const r of judged) worst.set(r.run, Math.max(worst.get(r.run) ?? 0, Math.abs(r.sds)));
   const first = new Map(rows.map((r) => [r.run, r]));
   const runs = [...new Set(judged.map((r) => r.run))];
+  const channels = CHANNELS.filter((c) => judged.some((r) => r.channel === c));
   const value = (/** @type {string} */ run) =>
     order === "size" ? -(worst.get(run) ?? 0) : order === "made" ? first.get(run).place : first.get(run)[order];
   const values = new Map(runs.map((run) => [run, value(run)]));
@@ -152,8 +159,12 @@ function HeatMap({ rows, order, errors, name }) {
       : t`${minus(r.all_sds.toFixed(1))} sds of all errors, ${minus(r.residual_sigma.toFixed(1))} of the noise alone:
         measured below computed`);
   const isMany = judged.length > MANY;
-  const held = judged.filter((r) => r.use === "holdout");
-  const heldLook = { x: "run", y: "channel", fill: "var(--ink)", className: "held" };
+  // A dot above the cells of a run: on a cell it would hide the colour.
+  const held = runs
+    .map((run) => first.get(run))
+    .filter((r) => r.use === "holdout")
+    .map((r) => ({ ...r, channel: channels[0] }));
+  const heldLook = { x: "run", y: "channel", dy: -CELL / 2 - 4, fill: "var(--ink)", className: "held" };
   // In a picture of many cells, all cells of one colour step are one element.
   const fill = isMany
     ? (/** @type {any} */ r) => Math.round(STEPS * Math.max(-MOST_SDS, Math.min(MOST_SDS, r.sds))) / STEPS
@@ -164,7 +175,7 @@ function HeatMap({ rows, order, errors, name }) {
   const draw = (/** @type {number} */ width) =>
     Plot.plot({
       width,
-      height: 30 + below(width) + 30 * new Set(judged.map((r) => r.channel)).size,
+      height: 30 + below(width) + CELL * channels.length,
       marginLeft: 92,
       marginBottom: below(width),
       style: STYLE,
@@ -175,12 +186,7 @@ function HeatMap({ rows, order, errors, name }) {
         tickSize: 0,
         ...(isNamed(width) ? {} : { ticks: [] }),
       },
-      y: {
-        domain: CHANNELS.filter((c) => judged.some((r) => r.channel === c)),
-        label: null,
-        tickFormat: short,
-        tickSize: 0,
-      },
+      y: { domain: channels, label: null, tickFormat: short, tickSize: 0 },
       color: {
         type: "linear",
         domain: [-MOST_SDS, 0, MOST_SDS],
@@ -208,7 +214,7 @@ function HeatMap({ rows, order, errors, name }) {
   return html`
     <${Figure}
       title=${
-        errors === "all"
+        named === "all"
           ? t`Residuals of every run and channel, in sds of noise, scatter of the soil and discrepancy`
           : t`Residuals of every run and channel, in sds of the noise alone`
       }
@@ -231,7 +237,7 @@ function HeatMap({ rows, order, errors, name }) {
         <span><i class="swatch below"></i>computed too high by ${MOST_SDS} sds or more</span>
         <span><i class="swatch level"></i>as measured</span>
         <span><i class="swatch above"></i>computed too low</span>
-        <span>dot: held out</span>
+        ${held.length > 0 && html`<span>dot above: held out</span>`}
       `}
     />
   `;

@@ -73,7 +73,9 @@ export function Live({ study, model, query, reload }) {
       !isReport &&
       isAddition(study, member) &&
       member.kind !== "search" &&
-      html`<p><${TakeBack} study=${study} id=${member.id} reload=${reload} /></p>`
+      html`
+        <p><${TakeBack} study=${study} id=${member.id} label=${t`Take back this calibration`} reload=${reload} /></p>
+      `
     }
     ${!isReport && !FINAL.includes(study.state) && html`<${Farm} />`}
     ${

@@ -8,7 +8,7 @@ import { InformationMap } from "../chart/information_map.js";
 import { t, translated } from "../language/language.js";
 import { ChannelCharts } from "../part/channel_charts.js";
 import { Clauses } from "../part/clauses.js";
-import { Explanations, OTHERS } from "../part/explanations.js";
+import { Explanations, useTitles } from "../part/explanations.js";
 import { Failure, Pending } from "../part/message.js";
 import { NewRuns } from "../part/new_runs.js";
 import { NoModel } from "../part/no_model.js";
@@ -35,6 +35,7 @@ export function MissingEffect({ study, model, query, reload }) {
   const [pointed, setPointed] = useState(/** @type {string | null} */ (null));
   const [kept, setKept] = useState(/** @type {string | null} */ (query.effect ?? null));
   const ghost = pointed ?? kept;
+  const titleOf = useTitles(model);
   const [failure, setFailure] = useState(/** @type {any} */ (null));
   const [isBusy, setBusy] = useState(false);
   const unchanged = useMemo(() => withoutChange(comparison?.rows ?? [], record?.curves), [comparison, record]);
@@ -116,8 +117,8 @@ export function MissingEffect({ study, model, query, reload }) {
           ${
             ghost
               ? html`
-                  Dashed: what <b>${OTHERS[ghost] ?? ghost}</b> would predict for the fitted runs, from the search's
-                  fit. Nothing has been computed anew.
+                  <b>${titleOf(ghost)}</b>: the dashed curves are what it would predict for the fitted runs, from the
+                  search's fit. Nothing has been computed anew.
                 `
               : t`Point at an explanation: its predictions appear over the data before anything is computed; a click on
                 its name keeps them.`

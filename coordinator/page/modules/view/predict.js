@@ -378,7 +378,7 @@ function Statement({ found, statement, change, answer, isBusy, isNumber }) {
       </select>
       <span class="whole">
         <input
-          size="7"
+          size="5"
           inputmode="decimal"
           aria-label=${titled(t`limit`, unit)}
           aria-invalid=${!isOpen && !isNumber}

@@ -20,6 +20,8 @@ const noModel = () => import("../part/no_model.js").then((module) => module.NoMo
 const modelTable = () => import("../part/model_table.js").then((module) => module.ModelTable);
 const ledger = () => import("../part/ledger.js").then((module) => module.Ledger);
 
+/** The evidence of each model in the sentence that compares them: the table below has it. */
+const EVIDENCES = / \(ln evidence [^)]*\)/;
 /** So many steps are shown at first. */
 const FIRST_STEPS = 3;
 
@@ -51,7 +53,11 @@ export function Story({ study, model, reload }) {
     <${StudyFailure} study=${study} />
     ${
       study.models &&
-      html`<p class=${`verdict ${study.models.none_of_these ? "doubt" : ""}`}>${sentence(study.models.text)}</p>`
+      html`
+        <p class=${`verdict ${study.models.none_of_these ? "doubt" : ""}`}>
+          ${sentence(study.models.text.replace(EVIDENCES, ""))}
+        </p>
+      `
     }
     <${Headline} study=${study} model=${model} reload=${reload} />
     <div class="three">

@@ -8,6 +8,7 @@ import { NoModel } from "../part/no_model.js";
 import { Table } from "../part/table.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
+import { said, sentence } from "../words/clauses.js";
 import { parameterTitle, shownParameter } from "../words/parameter.js";
 import { capital, channelName, digits, probability, shown, titled } from "../words/quantity.js";
 import { judgements } from "../words/trust.js";
@@ -21,14 +22,25 @@ export function Trust({ study, model }) {
   const line = study.ledger.find((/** @type {any} */ l) => l.calibration === model.id) ?? null;
   return html`
     ${diagnostics && html`<${Verdict} judgements=${judgements(line, diagnostics, model.story.wrong)} />`}
-    ${provenance.sentences.map((/** @type {string} */ s) => html`<p>${s}</p>`)}
-    <ul class="note">${provenance.notes.map((/** @type {string} */ n) => html`<li>${n}</li>`)}</ul>
+    <details>
+      <summary>Errors, interpolation and intervals, in sentences</summary>
+      ${provenance.sentences.map((/** @type {string} */ s) => html`<p>${sentence(s)}</p>`)}
+    </details>
+    ${
+      provenance.notes.length > 0 &&
+      html`
+        <details>
+          <summary>What was assumed, and what is doubtful</summary>
+          <ul class="note">${provenance.notes.map((/** @type {string} */ n) => html`<li>${sentence(n)}</li>`)}</ul>
+        </details>
+      `
+    }
     ${diagnostics && html`<${Data} diagnostics=${diagnostics} /><${Refused} rejections=${diagnostics.rejections} />`}
     ${
       study.rig.length > 0 &&
       html`
         <h2>What the rig did</h2>
-        ${study.rig.map((/** @type {string} */ s) => html`<p>${s}.</p>`)}
+        ${study.rig.map((/** @type {string} */ s) => html`<p>${sentence(s)}</p>`)}
         <p class="note">From repeats of a condition alone, without a model of the contact.</p>
       `
     }
@@ -37,10 +49,10 @@ export function Trust({ study, model }) {
       <dt>Model</dt>
       <dd>${provenance.model}, version ${provenance.model_version ?? "unknown"}</dd>
       <dt>Data</dt>
-      <dd>${provenance.data}</dd>
-      ${provenance.errors.map((/** @type {string} */ e) => html`<dt>Errors</dt><dd>${e}</dd>`)}
+      <dd>${said(provenance.data)}</dd>
+      ${provenance.errors.map((/** @type {string} */ e) => html`<dt>Errors</dt><dd>${said(e)}</dd>`)}
       <dt>Algorithm</dt>
-      <dd>${provenance.algorithm}, seed ${provenance.seed}</dd>
+      <dd>${said(provenance.algorithm)}, seed ${provenance.seed}</dd>
       <dt>Program</dt>
       <dd>${provenance.program}</dd>
     </dl>

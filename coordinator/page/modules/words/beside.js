@@ -53,13 +53,18 @@ function errors(/** @type {Side[]} */ sides) {
         [
           t`Error of ${channelName(channel)}, ${USE_WORDS[use]}`,
           ...cells,
-          isSame
-            ? `${minus(`${b.rmse < a.rmse ? "" : "+"}${((100 * (b.rmse - a.rmse)) / a.rmse).toFixed(0)}`)} %`
-            : t`over other runs`,
+          isSame ? ratioWords(a.rmse, b.rmse) : t`over other runs`,
         ],
       ];
     }),
   );
+}
+
+/** The second error over the first: `−50 %`, beyond twice and half as a factor, `× 15.5`. */
+function ratioWords(/** @type {number} */ before, /** @type {number} */ now) {
+  const ratio = now / before;
+  if (ratio > 2 || ratio < 0.5) return `× ${digits(ratio, 2)}`;
+  return `${ratio < 1 ? "" : "+"}${minus((100 * (ratio - 1)).toFixed(0))} %`;
 }
 
 /** The parameters by posterior mean and sd. */

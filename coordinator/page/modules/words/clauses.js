@@ -1,9 +1,17 @@
 // The clauses of a sentence of the service.
 
+import { told } from "../language/language.js";
 import { capital, raised } from "./quantity.js";
 
-/** A text as a sentence, with numbers and units as people write them. */
-export const sentence = (/** @type {string} */ text) => capital(raised(/[.!?]$/.test(text) ? text : `${text}.`));
+/**
+ * A text of the service in the language of the page, with numbers and units as people write them: a line does not end
+ * between them.
+ */
+export const said = (/** @type {string} */ text) =>
+  raised(told(text)).replace(/([<>=]|\bP) (?=[\d>< ])|(\d) (?=(?:N|mm|m|kN|kg)\b)/g, "$1$2\u00a0");
+
+/** The same as a sentence. */
+export const sentence = (/** @type {string} */ text) => capital(/[.!?]$/.test(text) ? said(text) : `${said(text)}.`);
 
 /** The parts between the semicolons of a text; those within brackets belong to their part. */
 export function clauses(/** @type {string} */ text) {

@@ -92,10 +92,12 @@ export function headline({ story }, changes) {
   const beside = first && first.noise !== null ? t`, noise ${noiseWords(first)}` : "";
   const added = missing.already_added;
   const isCalm = wrong.channels.length > 0 && wrong.channels.every((/** @type {any} */ c) => c.is_within_noise);
-  if (added.length > 0 && first?.before != null)
-    return capital(
-      added.length === 1 ? t`${error} with one more effect` : t`${error} with ${added.length} more effects`,
-    );
+  if (added.length > 0 && first?.before != null) {
+    const bought =
+      added.length === 1 ? t`${error} with one more effect` : t`${error} with ${added.length} more effects`;
+    if (["named", "class", "not_in_library"].includes(missing.verdict)) return capital(t`${bought}; more is missing`);
+    return capital(missing.verdict === "undecided" ? t`${bought}; what else is missing is undecided` : bought);
+  }
   const found = {
     named: () => t`something is missing: ${missing.named.map(plain).join("; ")}`,
     class: () => t`one of ${missing.named.length} effects is missing, and the data do not tell which`,

@@ -1,6 +1,6 @@
 // Quantities as people read them: their names, units and digits.
 
-import { t, translated } from "../language/language.js";
+import { decimal, t, translated } from "../language/language.js";
 import { shownUnit } from "../units.js";
 
 /** How a unit in SI is shown: in the units that a person chose. */
@@ -130,25 +130,25 @@ export function withSd(/** @type {(number | null)[]} */ values, /** @type {numbe
 export function meanAndSd(/** @type {number} */ mean, /** @type {number} */ sd) {
   const decimals = decimalsOf(mean, sd);
   if (decimals === null) return { mean: digits(mean, 4), sd: digits(sd, 2) };
-  return { mean: minus(mean.toFixed(decimals)), sd: sd.toFixed(decimals) };
+  return { mean: minus(mean.toFixed(decimals)), sd: minus(sd.toFixed(decimals)) };
 }
 
 /** A probability: `0.97`, `> 0.999`, `< 0.001`. */
 export function probability(/** @type {number} */ p) {
-  if (p > 0.999) return "> 0.999";
-  if (p < 0.001) return "< 0.001";
-  return p.toFixed(p > 0.99 || p < 0.01 ? 3 : 2);
+  if (p > 0.999) return decimal("> 0.999");
+  if (p < 0.001) return decimal("< 0.001");
+  return decimal(p.toFixed(p > 0.99 || p < 0.01 ? 3 : 2));
 }
 
 /** A duration: `12 s`, `3 min`, `2.5 h`. */
 export function duration(/** @type {number} */ seconds) {
   if (seconds < 90) return `${Math.max(1, Math.round(seconds))} s`;
   if (seconds < 5400) return `${Math.round(seconds / 60)} min`;
-  return `${(seconds / 3600).toFixed(1)} h`;
+  return `${decimal((seconds / 3600).toFixed(1))} h`;
 }
 
-/** With the sign that people write. */
-export const minus = (/** @type {number | string} */ value) => String(value).replace("-", "−");
+/** With the sign and the decimal mark that people write. */
+export const minus = (/** @type {number | string} */ value) => decimal(String(value).replace("-", "−"));
 
 /** Ten to a power, raised: 10⁻³. */
 export function power(/** @type {number} */ exponent) {

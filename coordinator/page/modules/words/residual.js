@@ -29,6 +29,11 @@ export function meanErrorSd(/** @type {Row[]} */ rows, /** @type {Errors} */ err
   return sds.length === 0 ? null : sds.reduce((sum, sd) => sum + sd, 0) / sds.length;
 }
 
+/** Whether the noise of every row is known, and is all the error that a calibration has. */
+export function hasOnlyNoise(/** @type {Row[]} */ rows) {
+  return rows.every((row) => sdOf(row, "noise") !== null) && !hasErrorsBesideNoise(rows);
+}
+
 /** Whether a calibration has errors beside its noise, so that the two differ. */
 export function hasErrorsBesideNoise(/** @type {Row[]} */ rows) {
   return rows.some((row) => (sdOf(row, "all") ?? 0) > 1.001 * (sdOf(row, "noise") ?? Infinity));

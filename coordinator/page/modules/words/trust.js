@@ -2,12 +2,14 @@
 
 import { t } from "../language/language.js";
 import { shownParameter } from "./parameter.js";
-import { channelName } from "./quantity.js";
+import { channelName, digits } from "./quantity.js";
 
 /** A probability below which chance does not explain what is seen. */
 const LEVEL = 0.01;
 /** Data that narrow a prior by less than this share of its sd tell little. */
 const LITTLE = 0.1;
+/** Errors larger than this many times the noise are more than the noise: what the model misses is in them. */
+const MOST_TIMES = 2;
 
 /** @typedef {{ question: string, level: "good" | "fair" | "poor", text: string }} Judgement */
 
@@ -26,9 +28,13 @@ function list(/** @type {string[]} */ names) {
  * @returns {Judgement[]}
  */
 export function judgements(line, diagnostics, wrong) {
-  return [sampler(line), residuals(diagnostics), priors(diagnostics), informed(diagnostics), predictions(wrong)].filter(
-    (one) => one !== null,
-  );
+  return [
+    sampler(line),
+    residuals(diagnostics, wrong),
+    priors(diagnostics),
+    informed(diagnostics),
+    predictions(wrong),
+  ].filter((one) => one !== null);
 }
 
 /** @returns {Judgement | null} */
@@ -41,16 +47,36 @@ function sampler(/** @type {any} */ line) {
 }
 
 /** @returns {Judgement | null} */
-function residuals(/** @type {any} */ { channels }) {
+function residuals(/** @type {any} */ { channels }, /** @type {any} */ wrong) {
   const judged = channels.filter((/** @type {any} */ c) => c.chi_square?.p !== null && c.chi_square?.p !== undefined);
   if (judged.length === 0) return null;
   const question = t`Do the assumed errors explain the residuals?`;
   const beyond = judged
     .filter((/** @type {any} */ c) => c.chi_square.p < LEVEL)
     .map((/** @type {any} */ c) => channelName(c.channel));
+  // Errors that are inferred from the residuals explain them in any case.
+  const widened = judged
+    .map((/** @type {any} */ c) => ({ ...c, times: c.error_sd / noiseOf(wrong, c.channel) }))
+    .filter((/** @type {any} */ c) => c.times > MOST_TIMES);
+  if (beyond.length === 0 && widened.length > 0) {
+    const most = Math.max(...widened.map((/** @type {any} */ c) => c.times));
+    const names = list(widened.map((/** @type {any} */ c) => channelName(c.channel)));
+    return {
+      question,
+      level: "fair",
+      text: t`only with errors that are inferred from the residuals themselves, up to ${digits(most, 2)} times the
+        noise: ${names}`,
+    };
+  }
   return beyond.length === 0
     ? { question, level: "good", text: t`in every channel (chi-square)` }
     : { question, level: "poor", text: t`not in ${list(beyond)}: something is missing, or the noise is understated` };
+}
+
+/** The noise of a channel, which the errors of the story count in; not a number where it is not known. */
+function noiseOf(/** @type {any} */ { channels }, /** @type {string} */ channel) {
+  const own = channels.find((/** @type {any} */ c) => c.channel === channel && c.is_judged);
+  return own?.noise_sds ? own.rmse / own.noise_sds : NaN;
 }
 
 /** @returns {Judgement} */
