@@ -94,7 +94,10 @@ test("an explanation shows what it predicts before it is computed, and a click a
   const button = page.getByRole("button", { name: "show what janosi_hanamoto would change" });
   await button.hover();
   await page.locator(".ghosts .ghost").first().waitFor({ state: "attached" });
-  assert.match(await page.locator(".ghosts .note").first().textContent(), /Dashed: what janosi_hanamoto would predict/);
+  assert.match(
+    await page.locator(".ghosts .note").first().textContent(),
+    /Shear stress needs displacement along the rim to build up: the dashed curves are what it would predict/,
+  );
   await shot(page, "hidden-effects");
   // Every picture is seen beside the list, and no words run into each other on a narrow screen.
   assert.equal(await page.locator(".ghosts figure").count(), 3);

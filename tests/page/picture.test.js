@@ -1,4 +1,5 @@
-// The picture of the page in the README: taken again of the same study, and compared. PICTURE=write puts the new one in its place.
+// The pictures of the page in README and documents: taken again of the same studies, and compared. PICTURE=write puts the
+// new ones in their place.
 //
 // Fonts and their smoothing differ between machines, so two things are compared. The words: the picture carries those that it shows, those
 // in charts too, as the text of its file. The layout: both pictures are drawn 160 pixels wide, and a pixel differs where a colour does by more
@@ -8,34 +9,55 @@ import assert from "node:assert/strict";
 import { readFile, writeFile } from "node:fs/promises";
 import { after, before, test } from "node:test";
 
-import { open, view } from "./browser.js";
+import { open } from "./browser.js";
 import { Service, filesOf } from "./service.js";
 
-const FOLDER = "examples/hidden-effect";
-const PICTURE = new URL("../../docs/page.png", import.meta.url);
-/** Most bytes of the picture: a README is read over slow lines too. */
+const DOCUMENTS = new URL("../../docs/", import.meta.url);
+/**
+ * The pictures: of the story of which example, in which language, how high, and what is drawn last.
+ */
+const PICTURES = [
+  {
+    file: "page.png",
+    folder: "examples/hidden-effect",
+    locale: "en-GB",
+    height: 1040,
+    last: ".three ~ .figures .plot svg",
+  },
+  {
+    file: "page-which-model.png",
+    folder: "examples/which-model",
+    locale: "en-GB",
+    height: 1120,
+    last: ".three ~ .scroll tbody tr",
+  },
+  {
+    file: "page-german.png",
+    folder: "examples/import-german",
+    locale: "de-DE",
+    height: 960,
+    last: ".three ~ .figures .plot svg",
+  },
+];
+/** Most bytes of a picture: a README is read over slow lines too. */
 const MOST_BYTES = 200_000;
 /** Most of the small pixels that may differ. */
 const MOST_SHARE = 0.09;
-const SIZE = { width: 1280, height: 1040 };
-let service, tab;
+const WIDTH = 1280;
+let service;
 
 before(async () => {
   service = await Service.start();
-  tab = await open({ url: service.url, ...SIZE });
 });
-after(async () => {
-  await tab?.close();
-  await service?.stop();
-});
+after(() => service?.stop());
 
-/** The study of the example as the service ends it by itself. */
-async function submitted() {
-  const texts = Object.fromEntries((await filesOf(FOLDER)).map(({ name, text }) => [name, text]));
-  const { "job.toml": job, "experiment.toml": experiment, ...files } = texts;
-  const { id } = await service.post("/v1/experiments", { toml: experiment, files });
-  return (await service.post("/v1/calibrations", { experiment: id, toml: job, files: {}, name: "hidden-effect" }))
-    .study;
+/** The study of an example as the service ends it by itself. */
+async function submitted(folder) {
+  const texts = Object.fromEntries((await filesOf(folder)).map(({ name, text }) => [name, text]));
+  const { "job.toml": job, "experiment.toml": experiment, "runs.csv": runs } = texts;
+  const { id } = await service.post("/v1/experiments", { toml: experiment, files: { "runs.csv": runs } });
+  const name = folder.split("/").at(-1);
+  return (await service.post("/v1/calibrations", { experiment: id, toml: job, files: {}, name })).study;
 }
 
 /** Share of the pixels that differ, of two pictures that are drawn small; 1 where their sizes differ. */
@@ -101,36 +123,40 @@ function crc32(/** @type {Buffer} */ bytes) {
 /** The words of the page, those of charts too, in the order of the document. */
 const wordsOf = (page) => page.evaluate(() => document.body.textContent.replace(/\s+/g, " ").trim());
 
-test("the picture in the README is that of the page", async () => {
-  const study = await submitted();
-  await service.finished(study);
-  const { page } = tab;
-  await page.goto(`${service.url}/#/studies/${study}/story`);
-  await view(page, "Story");
-  // The picture of the headline comes with the rows of two models, the others with the study.
-  await page.locator(".headline .model path").first().waitFor({ state: "attached" });
-  await page.locator(".three ~ .figures .plot svg").last().waitFor();
-  await page.mouse.move(2, 2);
-  const taken = withText(await page.screenshot(), await wordsOf(page));
-  if (process.env.PICTURE === "write") await writeFile(PICTURE, taken);
-  const kept = await readFile(PICTURE);
-  assert.ok(kept.length < MOST_BYTES, `docs/page.png has ${kept.length} bytes`);
-  assert.equal(
-    textOf(kept),
-    textOf(taken),
-    "docs/page.png shows other words than the page; tests/page/run with PICTURE=write takes it again",
-  );
-  // A document of its own: the policy of the page forbids pictures as data.
-  const blank = await tab.context.newPage();
-  const share = await difference(blank, [kept, taken]);
-  assert.ok(
-    share < MOST_SHARE,
-    `${(100 * share).toFixed(1)} % of docs/page.png differs from the page; tests/page/run with PICTURE=write takes it again`,
-  );
-  // The comparison can fail: the page without its cards is another picture.
-  await page
-    .addStyleTag({ content: ".headline, .three { display: none }" })
-    .catch(() => page.evaluate(() => document.querySelectorAll(".headline, .three").forEach((part) => part.remove())));
-  const other = await page.screenshot();
-  assert.ok((await difference(blank, [taken, other])) > MOST_SHARE, "a page without its cards passes for the same");
-});
+for (const { file, folder, locale, height, last } of PICTURES) {
+  test(`docs/${file} is a picture of the page`, async () => {
+    const study = await submitted(folder);
+    await service.finished(study);
+    const tab = await open({ url: service.url, width: WIDTH, height, locale });
+    try {
+      const { page } = tab;
+      await page.goto(`${service.url}/#/studies/${study}/story`);
+      await page.locator("section.view.story").waitFor();
+      // The picture of the headline comes with the rows of its models, the others with the study.
+      await page.locator(".headline .model path").first().waitFor({ state: "attached" });
+      await page.locator(last).last().waitFor();
+      await page.mouse.move(2, 2);
+      const taken = withText(await page.screenshot(), await wordsOf(page));
+      const place = new URL(file, DOCUMENTS);
+      if (process.env.PICTURE === "write") await writeFile(place, taken);
+      const kept = await readFile(place);
+      assert.ok(kept.length < MOST_BYTES, `docs/${file} has ${kept.length} bytes`);
+      const again = "tests/page/run with PICTURE=write takes it again";
+      assert.equal(textOf(kept), textOf(taken), `docs/${file} shows other words than the page; ${again}`);
+      // A document of its own: the policy of the page forbids pictures as data.
+      const blank = await tab.context.newPage();
+      const share = await difference(blank, [kept, taken]);
+      assert.ok(share < MOST_SHARE, `${(100 * share).toFixed(1)} % of docs/${file} differs from the page; ${again}`);
+      // The comparison can fail: the page without its cards is another picture.
+      await page
+        .addStyleTag({ content: ".headline, .three { display: none }" })
+        .catch(() =>
+          page.evaluate(() => document.querySelectorAll(".headline, .three").forEach((part) => part.remove())),
+        );
+      const other = await page.screenshot();
+      assert.ok((await difference(blank, [taken, other])) > MOST_SHARE, "a page without its cards passes for the same");
+    } finally {
+      await tab.close();
+    }
+  });
+}

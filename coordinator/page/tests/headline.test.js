@@ -62,6 +62,16 @@ test("the headline of a repaired model says the error before and after, in the u
   assert.equal(strengthWords(JANOSI), "shear modulus 9.36 ± 0.61 mm");
 });
 
+test("a model that still lacks something says so beside what its effects bought", () => {
+  const of = (/** @type {string} */ verdict) => {
+    const model = { id: 8, story: story({ verdict, already_added: [JANOSI] }, [channel("drawbar_pull", false)]) };
+    return headline(model, errorChanges({ ledger: LEDGER, fixed_sigma: SIGMA }, model));
+  };
+  assert.match(of("undecided"), /with one more effect; what else is missing is undecided$/);
+  assert.match(of("named"), /with one more effect; more is missing$/);
+  assert.match(of("nothing_detectable"), /with one more effect$/);
+});
+
 test("errors over other runs are no before", () => {
   assert.equal(lineBefore(LEDGER, 1), null);
   assert.equal(lineBefore(LEDGER, 8)?.calibration, 1);

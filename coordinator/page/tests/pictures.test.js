@@ -3,6 +3,9 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import vm from "node:vm";
 
+import { symbol } from "../modules/chart/colour.js";
+import { glyph } from "../modules/chart/glyph.js";
+
 // The vendored libraries are scripts that leave their names behind, as in the document.
 vm.runInThisContext(readFileSync(new URL("../vendor/d3.js", import.meta.url), "utf8"));
 const { natsWords, shownNats } = await import("../modules/chart/information_map.js");
@@ -160,4 +163,11 @@ test("a pointer means the nearest of merged marks, and none far away", () => {
   assert.equal(nearest(marks, 13, 10), "a");
   assert.equal(nearest(marks, 15, 10), "b");
   assert.equal(nearest(marks, 80, 10), undefined);
+});
+
+test("no sign of a measurement is that of a value which a model computes at a single condition", () => {
+  const signs = Array.from({ length: 8 }, (_, k) => symbol(k));
+  assert.equal(new Set(signs).size, 8);
+  assert.ok(!signs.includes("times"), `${signs}`);
+  for (const k of signs.keys()) assert.ok(glyph(k), `${signs[k]} has a glyph for legends`);
 });

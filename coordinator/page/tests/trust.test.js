@@ -48,3 +48,13 @@ test("each fault lowers its own question, and names what it is about", () => {
     ["good", "good", "fair", "good", "fair"],
   );
 });
+
+test("errors that are inferred from the residuals explain them in part only, and the noise is named beside them", () => {
+  const channels = [{ channel: "sinkage", error_sd: 9, chi_square: { p: 0.5 } }];
+  const known = { channels: [{ channel: "sinkage", use: "holdout", is_judged: true, rmse: 3, noise_sds: 4 }] };
+  const [, residuals] = judgements({ equilibrated: true }, { ...GOOD, channels }, known);
+  assert.equal(residuals.level, "fair");
+  assert.match(residuals.text, /up to 12 times the noise: sinkage$/);
+  const unknown = { channels: [{ ...known.channels[0], noise_sds: null }] };
+  assert.equal(judgements({ equilibrated: true }, { ...GOOD, channels }, unknown)[1].level, "good");
+});

@@ -1,0 +1,55 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+// A browser of a German reader.
+globalThis.localStorage = { getItem: (/** @type {string} */ key) => ({ "grouser.language": "de" })[key] ?? null };
+const { told } = await import("../modules/language/language.js");
+const { clauses, said, sentence } = await import("../modules/words/clauses.js");
+const { digits, meanAndSd, probability } = await import("../modules/words/quantity.js");
+
+const plain = (/** @type {string} */ text) => text.replaceAll("\u00a0", " ");
+
+test("sentences of the service are German with decimal commas, whole", () => {
+  const wrong =
+    "torque is off by 1.58 N m on held-out runs, and on the 6 of 16 that lie between fitted runs by 0.87 N m where interpolation has 0.14 N m: over-predicted at low slip and under-predicted at high slip; within the noise: sinkage 0.31 mm, 0.78 times the noise";
+  assert.deepEqual(
+    clauses(wrong).map((clause) => plain(sentence(clause))),
+    [
+      "Drehmoment: Fehler 1,58 N m bei zurückgehaltenen Fahrten, und bei den 6 von 16 zwischen angepassten Fahrten 0,87 N m, wo Interpolation 0,14 N m hat: bei kleinem Wert zu hoch und bei großem zu niedrig berechnet (Schlupf).",
+      "Im Rauschen: Einsinkung 0,31 mm, das 0,78-Fache des Rauschens.",
+    ],
+  );
+  for (const [english, german] of [
+    [
+      "janosi_hanamoto was missing (P > 0.999) and is added: held-out error from 8.3 to 0.83 times the noise",
+      "janosi_hanamoto fehlte (P > 0,999) und ist hinzugefügt: Fehler zurückgehaltener Fahrten vom 8,3- auf das 0,83-Fache des Rauschens",
+    ],
+    [
+      "beyond that, nothing that these data can show (P 0.65 that nothing is missing)",
+      "darüber hinaus nichts, was diese Daten zeigen können (P 0,65, dass nichts fehlt)",
+    ],
+    [
+      "run the wheel at slip 0.80 under 150 N at 16.0 mm/s, which tells a_b and c_d apart, and add the rows",
+      "das Rad fahren bei Schlupf 0,80 unter 150 N mit 16,0 mm/s; das unterscheidet a_b und c_d; dann die Zeilen hinzufügen",
+    ],
+    [
+      "search the library for the effect that the model is missing",
+      "die Bibliothek nach dem Effekt durchsuchen, der dem Modell fehlt",
+    ],
+    ["wheel", "Rad"],
+  ])
+    assert.equal(plain(said(english)), german);
+});
+
+test("a sentence with a phrase that is not known stays English as a whole", () => {
+  const unknown = "sinkage is off by 1.10 mm on held-out runs, because the moon is full";
+  assert.equal(told(unknown), unknown);
+});
+
+test("numbers have the decimal mark of the language", () => {
+  assert.deepEqual(
+    [digits(1.58), digits(-0.5, 2), probability(0.951), probability(1)],
+    ["1,58", "−0,50", "0,95", "> 0,999"],
+  );
+  assert.deepEqual(meanAndSd(9.3551, 0.613), { mean: "9,36", sd: "0,61" });
+});
