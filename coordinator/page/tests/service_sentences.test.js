@@ -15,7 +15,7 @@ test("sentences of the service are German with decimal commas, whole", () => {
   assert.deepEqual(
     clauses(wrong).map((clause) => plain(sentence(clause))),
     [
-      "Drehmoment: Fehler 1,58 N m bei zurückgehaltenen Fahrten, und bei den 6 von 16 zwischen angepassten Fahrten 0,87 N m, wo Interpolation 0,14 N m hat: bei kleinem Wert zu hoch und bei großem zu niedrig berechnet (Schlupf).",
+      "Drehmoment: Fehler 1,58 N m bei zurückgehaltenen Fahrten, und bei den 6 von 16 zwischen angepassten Fahrten: 0,87 N m, wo Interpolation 0,14 N m hat: bei kleinem Schlupf zu hoch und bei großem zu niedrig berechnet.",
       "Im Rauschen: Einsinkung 0,31 mm, das 0,78-Fache des Rauschens.",
     ],
   );

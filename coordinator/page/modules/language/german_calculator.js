@@ -2,7 +2,7 @@
 
 /** @type {Record<string, string>} */
 export const CALCULATOR = {
-  "1.24 × radius": "1.24 × Radius",
+  "1.24 × radius": "1,24 × Radius",
   "90 % by the parameters alone: the noise is not known":
     "90 % nur nach den Parametern: das Rauschen ist nicht bekannt",
   "90 % of new measurements": "90 % neuer Messungen",

@@ -79,7 +79,7 @@ export const SENTENCES = {
   "Measured less computed; the grey band is one sd, the mean over the runs, of the noise alone.":
     "Gemessen minus berechnet; das graue Band ist eine Standardabweichung des Rauschens allein, im Mittel über die Fahrten.",
   "The line is the trend that the diagnosis tests, where it is beyond chance (p below 0.01 among all tests).":
-    "Die Linie ist der Trend, den die Diagnose prüft, wo er über Zufall hinausgeht (p unter 0.01 unter allen Prüfungen).",
+    "Die Linie ist der Trend, den die Diagnose prüft, wo er über Zufall hinausgeht (p unter 0,01 unter allen Prüfungen).",
   "Errors that residuals count in": "Fehler, in denen Abweichungen zählen",
   "all errors": "alle Fehler",
   "the noise alone": "das Rauschen allein",
@@ -107,7 +107,7 @@ export const SENTENCES = {
   "Point at an explanation: its predictions appear over the data before anything is computed; a click on its name keeps them.":
     "Zeigen Sie auf eine Erklärung: ihre Vorhersagen erscheinen über den Daten, bevor etwas gerechnet wird; ein Klick auf den Namen hält sie fest.",
   "Probabilities compare these {0} models alone, from equal prior odds. {1}. Noise sds: error over the noise; a model that is right has about 1. p of chi-square: how often noise alone leaves so large residuals of the fitted runs; if that of the most probable model is below 0.01, the answer is “none of these”.":
-    "Die Wahrscheinlichkeiten vergleichen nur diese {0} Modelle, von gleichen Prior-Chancen aus. {1}. × Rauschen: Fehler durch Rauschen; ein richtiges Modell hat etwa 1. p von Chi-Quadrat: wie oft Rauschen allein so große Abweichungen der angepassten Fahrten lässt; liegt es beim wahrscheinlichsten Modell unter 0.01, ist die Antwort „keines von diesen“.",
+    "Die Wahrscheinlichkeiten vergleichen nur diese {0} Modelle, von gleichen Prior-Chancen aus. {1}. × Rauschen: Fehler durch Rauschen; ein richtiges Modell hat etwa 1. p von Chi-Quadrat: wie oft Rauschen allein so große Abweichungen der angepassten Fahrten lässt; liegt es beim wahrscheinlichsten Modell unter 0,01, ist die Antwort „keines von diesen“.",
   "regions of {0} % of the posterior; rank correlation {1}": "Gebiete von {0} % des Posteriors; Rangkorrelation {1}",
   "Residuals of every run and channel, in sds of the noise alone":
     "Abweichungen jeder Fahrt und jedes Kanals, in Standardabweichungen des Rauschens allein",

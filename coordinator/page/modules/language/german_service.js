@@ -83,9 +83,9 @@ const PHRASES = {
   " on (held-out|fitted) runs cannot be judged: (?:its|their) noise is inferred together with the misfit":
     " auf $1 runs: nicht zu beurteilen, weil das Rauschen mit der Abweichung zusammen geschätzt ist",
   ", and on the (\\d+) of (\\d+) that lie between fitted runs by (.+?) where interpolation has ([\\d.,−-]+ (?:N m|mm|m|kN|N))":
-    ", und bei den $1 von $2 zwischen angepassten Fahrten $3, wo Interpolation $4 hat",
+    ", und bei den $1 von $2 zwischen angepassten Fahrten: $3, wo Interpolation $4 hat",
   ", and on (\\d+) of (\\d+) by (.+?) where interpolation has ([\\d.,−-]+ (?:N m|mm|m|kN|N))":
-    ", und bei $1 von $2 $3, wo Interpolation $4 hat",
+    ", und bei $1 von $2: $3, wo Interpolation $4 hat",
   ", where interpolation between the fitted runs has ([\\d.,−-]+ (?:N m|mm|m|kN|N))":
     ", wo Interpolation zwischen den angepassten Fahrten $1 hat",
   " is off by ": ": Fehler ",
@@ -96,10 +96,14 @@ const PHRASES = {
   "most at a slip angle of ([\\d.−-]+) deg": "am meisten bei einem Schräglaufwinkel von $1°",
   "most at a (wheel load|slip|sled speed|rim speed) of ": "am meisten bei $1 ",
   ", (over|under)-predicted there": ", dort $1-predicted",
-  "over-predicted at low (slip|wheel load|sled speed|rim speed) and under-predicted at high \\1":
-    "bei kleinem Wert zu hoch und bei großem zu niedrig berechnet ($1)",
-  "under-predicted at low (slip|wheel load|sled speed|rim speed) and over-predicted at high \\1":
-    "bei kleinem Wert zu niedrig und bei großem zu hoch berechnet ($1)",
+  "over-predicted at low slip and under-predicted at high slip":
+    "bei kleinem Schlupf zu hoch und bei großem zu niedrig berechnet",
+  "over-predicted at low (wheel load|sled speed|rim speed) and under-predicted at high \\1":
+    "bei kleiner $1 zu hoch und bei großer zu niedrig berechnet",
+  "under-predicted at low slip and over-predicted at high slip":
+    "bei kleinem Schlupf zu niedrig und bei großem zu hoch berechnet",
+  "under-predicted at low (wheel load|sled speed|rim speed) and over-predicted at high \\1":
+    "bei kleiner $1 zu niedrig und bei großer zu hoch berechnet",
   "over-predicted in (?:every run|all runs)": "in jeder Fahrt zu hoch berechnet",
   "under-predicted in (?:every run|all runs)": "in jeder Fahrt zu niedrig berechnet",
   "over-predicted": "zu hoch berechnet",
@@ -198,8 +202,7 @@ const PHRASES = {
     "die Daten bestimmen $1 am wenigsten: $2 % der Standardabweichung des Priors bleiben",
   "the data say almost nothing about (.+?): (\\d+) % of the prior standard deviation remains in their worst combination, (\\d+) % in their best":
     "die Daten sagen fast nichts über $1: in der schlechtesten Kombination bleiben $2 % der Standardabweichung des Priors, in der besten $3 %",
-  "drawbar pull and torque show the same trend: shear may be mobilised later than in the model":
-    "Zugkraft und Drehmoment zeigen denselben Trend: der Schub baut sich vielleicht später auf als im Modell",
+  "drawbar pull and torque show the same trend": "Zugkraft und Drehmoment zeigen denselben Trend",
   "all fitted data: ": "alle angepassten Daten: ",
   "the data contradict the prior as a whole \\(squared distance ([\\d.]+) where ([\\d.]+) is expected, (p [=<] \\S+) among (\\d+) tests?\\)":
     "die Daten widersprechen dem Prior im Ganzen (Abstandsquadrat $1, erwartet $2, $3 unter $4 Prüfungen)",
