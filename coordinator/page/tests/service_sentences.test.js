@@ -36,6 +36,18 @@ test("sentences of the service are German with decimal commas, whole", () => {
       "search the library for the effect that the model is missing",
       "die Bibliothek nach dem Effekt durchsuchen, der dem Modell fehlt",
     ],
+    [
+      "sinkage is off by 0.65 mm, 1.6 times the noise: most at a load of 60 N, over-predicted there",
+      "Einsinkung: Fehler 0,65 mm, das 1,6-Fache des Rauschens: am meisten bei einer Last von 60 N, dort zu hoch berechnet",
+    ],
+    [
+      "measure runs in skid: they would show 1 further effect",
+      "messen: gebremste Fahrten; das würde 1 weiteren Effekt zeigen",
+    ],
+    [
+      "go on with calibration 3 (which-model (wong_reece)), the current model of the study",
+      "weiter mit Kalibrierung 3 (which-model (wong_reece)), dem aktuellen Modell der Studie",
+    ],
     ["wheel", "Rad"],
   ])
     assert.equal(plain(said(english)), german);

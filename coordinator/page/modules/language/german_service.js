@@ -94,7 +94,10 @@ const PHRASES = {
   "([\\d.]+) times the noise": "das $1-Fache des Rauschens",
   ", likewise": ", ebenso",
   "most at a slip angle of ([\\d.−-]+) deg": "am meisten bei einem Schräglaufwinkel von $1°",
-  "most at a (wheel load|slip|sled speed|rim speed) of ": "am meisten bei $1 ",
+  "most at a load of ([\\d.]+)": "am meisten bei einer Last von $1",
+  "most at a (?:sled )?speed of ([\\d.]+)": "am meisten bei einer Geschwindigkeit von $1",
+  "most at a rim speed of ([\\d.]+)": "am meisten bei einer Umfangsgeschwindigkeit von $1",
+  "most at (?:a )?slip (?:of )?([\\d.−-]+)": "am meisten bei Schlupf $1",
   ", (over|under)-predicted there": ", dort $1-predicted",
   "over-predicted at low slip and under-predicted at high slip":
     "bei kleinem Schlupf zu hoch und bei großem zu niedrig berechnet",
@@ -125,6 +128,7 @@ const PHRASES = {
   "nothing further is detectable": "weiter ist nichts nachweisbar",
   "less probable: ": "weniger wahrscheinlich: ",
   "a law outside the library": "ein Gesetz außerhalb der Bibliothek",
+  "not judged for want of data on the rig: 1 effect$": "ohne Angaben zum Prüfstand nicht beurteilt: 1 Effekt",
   "not judged for want of data on the rig: (\\d+) effects?": "ohne Angaben zum Prüfstand nicht beurteilt: $1 Effekte",
   "not judged for want of data on the rig: ": "ohne Angaben zum Prüfstand nicht beurteilt: ",
   "not judged: (\\d+) effects?, of whose cause this model shows nothing":
@@ -177,11 +181,10 @@ const PHRASES = {
   "the density of soil (\\S+?)(?=[,: ]| and |$)": "die Dichte des Bodens $1",
   "the grousers of wheel (\\S+) \\(none for a smooth rim\\)": "die Stollen des Rades $1 (keine bei glattem Umfang)",
   "the length of the bin": "die Länge der Rinne",
+  ": the search then judges 1 further effect$": "; die Suche beurteilt dann 1 weiteren Effekt",
   ": the search then judges (\\d+) further effects?": "; die Suche beurteilt dann $1 weitere Effekte",
-  "measure runs at a slip angle: they would show (\\d+) further effects?":
-    "Fahrten mit Schräglaufwinkel messen: sie würden $1 weitere Effekte zeigen",
-  "measure runs in skid: they would show (\\d+) further effects?":
-    "gebremste Fahrten messen: sie würden $1 weitere Effekte zeigen",
+  "^measure (.+): they would show 1 further effect$": "messen: $1; das würde 1 weiteren Effekt zeigen",
+  "^measure (.+): they would show (\\d+) further effects": "messen: $1; das würde $2 weitere Effekte zeigen",
   "they would show ": "sie würden zeigen: ",
   "in the experiment: ": "im Experiment: ",
   "; then the search judges ": "; dann beurteilt die Suche ",
@@ -283,7 +286,7 @@ const NAMES = {
 
 /** Words that a sentence in German does not have. */
 const ENGLISH = new RegExp(
-  "(?<![\\w.[])(the|is|are|of|and|than|as|does|about|among|a|it|where|that|with|by|runs?|from|has|its|no|not|under|to|which|wheel|model|noise|missing|runs)(?!\\w|\\.\\w|\\])",
+  "(?<![\\w.[-])(the|is|are|of|and|than|as|does|about|among|a|it|where|that|with|by|runs?|from|has|its|no|not|under|to|which|wheel|model|noise|missing|runs|measure|further|effects?|most|load|other|there|least|larger?)(?!\\w|\\.\\w|\\]|-)",
   "i",
 );
 
