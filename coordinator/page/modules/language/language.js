@@ -36,11 +36,12 @@ export function t(texts, ...parts) {
 /** A text of the service, such as a state or what an effect does, where the catalogue has it. */
 export const translated = (/** @type {string} */ text) => catalogue?.[text] ?? text;
 
-const service = language === "de" ? await import("./german_service.js") : null;
+const ofService = () => import("./german_service.js").then((module) => module.germanOf);
+const germanOf = language === "de" ? await ofService() : null;
 
 /** A sentence of the service in the language of the page; in English where that has no words for it. */
 export function told(/** @type {string} */ text) {
-  const found = service?.germanOf(text);
+  const found = germanOf?.(text);
   return found === null || found === undefined ? text : decimal(found);
 }
 
