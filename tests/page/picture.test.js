@@ -7,7 +7,7 @@
 
 import assert from "node:assert/strict";
 import { readFile, writeFile } from "node:fs/promises";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 
 import { open } from "./browser.js";
 import { Service, filesOf } from "./service.js";
@@ -21,21 +21,21 @@ const PICTURES = [
     file: "page.png",
     folder: "examples/hidden-effect",
     locale: "en-GB",
-    height: 1040,
+    height: 1020,
     last: ".three ~ .figures .plot svg",
   },
   {
     file: "page-which-model.png",
     folder: "examples/which-model",
     locale: "en-GB",
-    height: 1120,
+    height: 1230,
     last: ".three ~ .scroll tbody tr",
   },
   {
     file: "page-german.png",
     folder: "examples/import-german",
     locale: "de-DE",
-    height: 960,
+    height: 800,
     last: ".three ~ .figures .plot svg",
   },
 ];
@@ -44,15 +44,9 @@ const MOST_BYTES = 200_000;
 /** Most of the small pixels that may differ. */
 const MOST_SHARE = 0.09;
 const WIDTH = 1280;
-let service;
-
-before(async () => {
-  service = await Service.start();
-});
-after(() => service?.stop());
 
 /** The study of an example as the service ends it by itself. */
-async function submitted(folder) {
+async function submitted(service, folder) {
   const texts = Object.fromEntries((await filesOf(folder)).map(({ name, text }) => [name, text]));
   const { "job.toml": job, "experiment.toml": experiment, "runs.csv": runs } = texts;
   const { id } = await service.post("/v1/experiments", { toml: experiment, files: { "runs.csv": runs } });
@@ -125,10 +119,13 @@ const wordsOf = (page) => page.evaluate(() => document.body.textContent.replace(
 
 for (const { file, folder, locale, height, last } of PICTURES) {
   test(`docs/${file} is a picture of the page`, async () => {
-    const study = await submitted(folder);
-    await service.finished(study);
-    const tab = await open({ url: service.url, width: WIDTH, height, locale });
+    // A service of its own: the page shows the number of the study.
+    const service = await Service.start();
+    let tab;
     try {
+      const study = await submitted(service, folder);
+      await service.finished(study);
+      tab = await open({ url: service.url, width: WIDTH, height, locale });
       const { page } = tab;
       await page.goto(`${service.url}/#/studies/${study}/story`);
       await page.locator("section.view.story").waitFor();
@@ -156,7 +153,8 @@ for (const { file, folder, locale, height, last } of PICTURES) {
       const other = await page.screenshot();
       assert.ok((await difference(blank, [taken, other])) > MOST_SHARE, "a page without its cards passes for the same");
     } finally {
-      await tab.close();
+      await tab?.close();
+      await service.stop();
     }
   });
 }
