@@ -182,7 +182,7 @@ test("a list of many studies is found by words, in an order", () =>
     assert.match(await page.locator("th time").first().textContent(), /^20\d\d-\d\d-\d\d$/);
     assert.match(
       await page.locator("td[data-label=found]").first().textContent(),
-      /janosi_hanamoto was missing \(P > 0\.999\) and is added/,
+      /janosi_hanamoto was missing \(P\s>\s0\.999\) and is added/,
     );
   }));
 
