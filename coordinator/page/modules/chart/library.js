@@ -1,7 +1,11 @@
 // The libraries that draw: Observable Plot on D3, as vendored. They stand before the modules in the document.
 
-export const Plot = /** @type {typeof import("@observablehq/plot")} */ (/** @type {any} */ (globalThis).Plot);
-export const d3 = /** @type {typeof import("d3")} */ (/** @type {any} */ (globalThis).d3);
+const libraries =
+  /** @type {typeof globalThis & { Plot: typeof import("@observablehq/plot"), d3: typeof import("d3") }} */ (
+    globalThis
+  );
+
+export const { Plot, d3 } = libraries;
 
 /** The type of every picture. */
 export const STYLE = { fontSize: "12px" };

@@ -1,15 +1,16 @@
 // Takes back what was added to a study: the study is as before, and the same addition brings it again without being
 // computed anew.
 
+import { errorOf } from "../rest/answers.js";
 import { html, useState } from "../html.js";
 import { withdraw } from "../rest/routes.js";
 import { address } from "../route.js";
 import { Failure } from "./message.js";
 
-/** @param {{ study: any, id: number, reload?: () => void }} properties id: of the calibration that was added */
+/** @param {{ study: Study, id: number, reload?: () => void }} properties id: of the calibration that was added */
 export function TakeBack({ study, id, reload }) {
   const [isAsked, setAsked] = useState(false);
-  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [failure, setFailure] = useState(/** @type {Error | null} */ (null));
   const take = async () => {
     setFailure(null);
     setAsked(false);
@@ -18,7 +19,7 @@ export function TakeBack({ study, id, reload }) {
       reload?.();
       location.hash = address(["studies", study.id, "story"]);
     } catch (error) {
-      setFailure(error);
+      setFailure(errorOf(error));
     }
   };
   return html`
@@ -38,13 +39,13 @@ export function TakeBack({ study, id, reload }) {
 }
 
 /** The calibration that added an effect to a model; null where none did. */
-export function additionOf(/** @type {any} */ study, /** @type {string[]} */ effects) {
+export function additionOf(/** @type {Study} */ study, /** @type {string[]} */ effects) {
   const found = study.members.find(
-    (/** @type {any} */ m) => m.kind !== "search" && m.effects.length > 0 && m.effects.join(" ") === effects.join(" "),
+    (m) => m.kind !== "search" && m.effects.length > 0 && m.effects.join(" ") === effects.join(" "),
   );
   return found?.id ?? null;
 }
 
 /** Whether a model has something that the submitted one has not. */
-export const isAddition = (/** @type {any} */ study, /** @type {any} */ model) =>
+export const isAddition = (/** @type {Study} */ study, /** @type {Member} */ model) =>
   model.effects.length > 0 && study.members[0].id !== model.id;
