@@ -13,9 +13,10 @@ export const language = chosen.value;
 /** Chooses a language; the page begins anew in it. */
 export const choose = (/** @type {string} */ to) => chosen.change(to);
 
-const german = () => import("./german.js").then((module) => module.GERMAN);
+const loadGerman = () => import("./german.js");
+const german = language === "de" ? await loadGerman() : null;
 /** @type {Record<string, string> | null} texts by their English form; `{0}` stands for the first part that varies */
-const catalogue = language === "de" ? await german() : null;
+const catalogue = german?.GERMAN ?? null;
 if (globalThis.document) document.documentElement.lang = language;
 
 /** The end of a line within a text, with the indentation of the next. */
@@ -34,7 +35,14 @@ export function t(texts, ...parts) {
 }
 
 /** A text of the service, such as a state or what an effect does, where the catalogue has it. */
-export const translated = (/** @type {string} */ text) => catalogue?.[text] ?? text;
+export const translated = (/** @type {string} */ text) => textIn(catalogue, text);
+
+/** The words of a parameter's name; a name that somebody gave, such as that of a wheel, is none of them. */
+export const translatedParameter = (/** @type {string} */ words) => textIn(german?.PARAMETERS ?? null, words);
+
+/** A text in a language; itself where the texts of the language lack it. */
+const textIn = (/** @type {Record<string, string> | null} */ texts, /** @type {string} */ text) =>
+  texts !== null && Object.hasOwn(texts, text) ? texts[text] : text;
 
 /** The place of a part that varies, within the text of a template. */
 const MARK = /\0(\d+)\0/g;
