@@ -231,6 +231,27 @@ test("parts that were opened are open in a view that is gone back to, and closed
     assert.equal(await page.locator("details[open]").count(), 0);
   }));
 
+test("of two folded parts with one title, the one that was opened is open in a view that is gone back to", () =>
+  within({}, async (page) => {
+    await page.route("**/v1/studies/1", async (route) => {
+      const response = await route.fetch();
+      const study = await response.json();
+      const step = { kind: "discover", command: null, runs: [] };
+      const steps = ["first", "second"].map((text) => ({ ...step, text, detail: `why the ${text}` }));
+      for (const member of study.members) if (member.story) member.story.next.steps = steps;
+      await route.fulfill({ response, json: study });
+    });
+    await go(page, "#/studies/1/story");
+    await page.getByText("In detail").nth(1).click();
+    await page.waitForFunction(() => history.state?.open?.length === 1);
+    await page.getByRole("link", { name: "Compare", exact: true }).click();
+    await page.locator("section.view.compare figure .plot > svg").first().waitFor();
+    await page.goBack();
+    await page.getByText("why the second").waitFor();
+    assert.equal(await page.getByText("why the first").isVisible(), false);
+    assert.equal(await page.locator("details[open]").count(), 1);
+  }));
+
 test("an address has the runs that are chosen and the effect whose curves are kept", () =>
   within({}, async (page) => {
     await go(page, "#/studies/1/failures");

@@ -177,7 +177,10 @@ function BenchTest(/** @type {{ text: string }} */ { text }) {
   return html`
     <li>
       ${capital(what)}${" "}
-      ${place && html`<details><summary>In detail</summary><span class="note">${place}</span></details>`}
+      ${
+        place &&
+        html`<details data-fold=${text}><summary>In detail</summary><span class="note">${place}</span></details>`
+      }
     </li>
   `;
 }

@@ -215,7 +215,12 @@ function Step({ step, study, model, reload }) {
     ${sentence(step.text)}${" "}
     ${
       step.detail &&
-      html`<details><summary>In detail</summary><span class="note">${sentence(step.detail)}</span></details>`
+      html`
+        <details data-fold=${step.text}>
+          <summary>In detail</summary>
+          <span class="note">${sentence(step.detail)}</span>
+        </details>
+      `
     }
     ${call}
     <${Failure} error=${failure} />
