@@ -17,6 +17,7 @@ import { follow } from "../rest/events.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address, replace } from "../route.js";
+import { followable } from "../words/model.js";
 import { words } from "../words/quantity.js";
 import { toGo } from "../words/time_to_go.js";
 import { progressWords } from "../words/state.js";
@@ -46,8 +47,7 @@ function memberOf(/** @type {Study} */ study, /** @type {string | undefined} */ 
 export function Live({ study, model, query, reload }) {
   const member = memberOf(study, query.member ?? (isReport ? String(model?.id) : undefined));
   if (!member) return html`<p class="empty">This study has no calibration.</p>`;
-  // A search and a fit have no posterior that further runs could change.
-  const followable = member.kind === "sample" && member.state === "finished" ? member : model;
+  const campaignModel = followable(member, model);
   const go = (/** @type {number} */ id) => replace(address(["studies", study.id, "live"], { member: id }));
   const names = study.members.map((m) => [
     isReport
@@ -79,14 +79,14 @@ export function Live({ study, model, query, reload }) {
     ${
       !isReport &&
       FINAL.includes(study.state) &&
-      followable &&
+      campaignModel &&
       html`
         <${Later}
-          key=${`campaign ${followable.id}`}
+          key=${`campaign ${campaignModel.id}`}
           title=${t`The campaign`}
           load=${campaign}
           study=${study}
-          model=${followable}
+          model=${campaignModel}
           reload=${reload}
         />
       `

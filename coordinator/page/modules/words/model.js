@@ -33,3 +33,12 @@ function otherRuns(/** @type {Study} */ study, /** @type {Member} */ member) {
     ? [line.fitted_runs === 1 ? t`1 fitted run` : t`${line.fitted_runs} fitted runs`]
     : [];
 }
+
+/**
+ * The model that a campaign goes on from: the member that is shown, else the model that is. A search and a fit have no
+ * posterior that further runs could change.
+ * @param {Member} member
+ * @param {Member | null} model
+ */
+export const followable = (member, model) =>
+  [member, model].find((candidate) => candidate?.kind === "sample" && candidate.state === "finished") ?? null;
