@@ -182,7 +182,7 @@ test("a list of many studies is found by words, in an order", () =>
     assert.match(await page.locator("th time").first().textContent(), /^20\d\d-\d\d-\d\d$/);
     assert.match(
       await page.locator("td[data-label=found]").first().textContent(),
-      /janosi_hanamoto was missing \(P\s>\s0\.999\) and is added/,
+      /janosi_hanamoto was missing \(P > 0\.999\) and is added/,
     );
   }));
 
@@ -202,15 +202,15 @@ test("the pictures of a view are one stop of the tab key each, and arrows go bet
   }));
 
 test("a view that is gone back to is where the reader left it", () =>
-  within({ height: 600 }, async (page) => {
+  within({}, async (page) => {
     await go(page, "#/studies/1/compare");
-    await page.evaluate(() => scrollTo(0, 150));
-    await page.waitForFunction(() => history.state?.top === 150);
+    await page.evaluate(() => scrollTo(0, 500));
+    await page.waitForFunction(() => history.state?.top === 500);
     await page.getByRole("link", { name: "Where it fails", exact: true }).click();
     await page.locator("section.view.failures figure .plot > svg").first().waitFor();
     assert.equal(await page.evaluate(() => scrollY), 0);
     await page.goBack();
-    await page.waitForFunction(() => Math.abs(scrollY - 150) < 3);
+    await page.waitForFunction(() => Math.abs(scrollY - 500) < 3);
   }));
 
 test("parts that were opened are open in a view that is gone back to, and closed in a new one", () =>
@@ -229,6 +229,27 @@ test("parts that were opened are open in a view that is gone back to, and closed
     await page.getByRole("link", { name: "Compare", exact: true }).click();
     await page.getByText("Table of all runs").waitFor();
     assert.equal(await page.locator("details[open]").count(), 0);
+  }));
+
+test("of two folded parts with one title, the one that was opened is open in a view that is gone back to", () =>
+  within({}, async (page) => {
+    await page.route("**/v1/studies/1", async (route) => {
+      const response = await route.fetch();
+      const study = await response.json();
+      const step = { kind: "discover", command: null, runs: [] };
+      const steps = ["first", "second"].map((text) => ({ ...step, text, detail: `why the ${text}` }));
+      for (const member of study.members) if (member.story) member.story.next.steps = steps;
+      await route.fulfill({ response, json: study });
+    });
+    await go(page, "#/studies/1/story");
+    await page.getByText("In detail").nth(1).click();
+    await page.waitForFunction(() => history.state?.open?.length === 1);
+    await page.getByRole("link", { name: "Compare", exact: true }).click();
+    await page.locator("section.view.compare figure .plot > svg").first().waitFor();
+    await page.goBack();
+    await page.getByText("why the second").waitFor();
+    assert.equal(await page.getByText("why the first").isVisible(), false);
+    assert.equal(await page.locator("details[open]").count(), 1);
   }));
 
 test("an address has the runs that are chosen and the effect whose curves are kept", () =>

@@ -29,12 +29,12 @@ const QUESTION = "?";
  * What the words of a column mean, as proposed; nothing where they are those of runs.csv.
  * @returns {Record<string, string>}
  */
-export function meaningsOf(/** @type {any} */ column) {
+export function meaningsOf(/** @type {ColumnCard | undefined} */ column) {
   const words = column?.words ?? [];
-  return words.every((/** @type {any} */ card) => ["fit", "holdout"].includes(card.word)) ? {} : tableOf(words);
+  return words.every((card) => ["fit", "holdout"].includes(card.word)) ? {} : tableOf(words);
 }
 
-const tableOf = (/** @type {any[]} */ words) =>
+const tableOf = (/** @type {Schemas["WordCard"][]} */ words) =>
   Object.fromEntries(words.map((card) => [card.word, card.means ?? QUESTION]));
 
 /** The same choices with a row left out. @returns {Choices} */
@@ -51,18 +51,19 @@ export const withAgain = (/** @type {Choices} */ choices, /** @type {number} */ 
 
 /**
  * What a guess proposes; a unit that the file does not state is left open.
- * @param {any} guess
+ * @param {Guess} guess
  * @returns {Choices}
  */
 export function proposed(guess) {
-  const choice = (/** @type {any} */ of) => ({
+  const choice = (/** @type {FieldGuess | QuantityGuess} */ guessed) => ({
     ...blank,
-    column: of.column ?? null,
-    unit: of.unit ?? "",
-    formula: of.formula ?? "",
-    words: tableOf(of.meanings ?? []),
+    column: guessed.column ?? null,
+    unit: guessed.unit ?? "",
+    formula: "formula" in guessed ? (guessed.formula ?? "") : "",
+    words: "meanings" in guessed ? tableOf(guessed.meanings) : {},
   });
-  const byName = (/** @type {any[]} */ list) => Object.fromEntries(list.map((one) => [one.name, choice(one)]));
+  const byName = (/** @type {(FieldGuess | QuantityGuess)[]} */ list) =>
+    Object.fromEntries(list.map((guessed) => [guessed.name, choice(guessed)]));
   return {
     sheet: guess.sheet ?? null,
     titleLine: guess.title_line,
@@ -79,7 +80,7 @@ const quoted = (/** @type {string} */ text) => JSON.stringify(text).replaceAll("
 
 /**
  * The text of the map. What is open is written as a question, which the service refuses at its field.
- * @param {any} guess
+ * @param {Guess} guess
  * @param {Choices} choices
  */
 export function mapOf(guess, choices) {
@@ -89,42 +90,48 @@ export function mapOf(guess, choices) {
   if (choices.unitLine !== null) head.push(`units = ${choices.unitLine}`);
   if (choices.decimal !== null) head.push(`decimal = ${quoted(choices.decimal)}`);
   if (choices.skipped.length > 0) head.push(`skip = [${choices.skipped.map((row) => row.line).join(", ")}]`);
-  const table = (/** @type {string} */ kind, /** @type {any} */ of, /** @type {Choice} */ choice) => {
-    const unit = of.units.length === 0 ? [] : [`unit = ${quoted(choice.unit || QUESTION)}`];
+  const table = (
+    /** @type {string} */ kind,
+    /** @type {FieldGuess | QuantityGuess} */ field,
+    /** @type {Choice} */ choice,
+  ) => {
+    const unit = field.units.length === 0 ? [] : [`unit = ${quoted(choice.unit || QUESTION)}`];
     const words = Object.entries(choice.words).map(([word, means]) => `${quoted(word)} = ${quoted(means)}`);
     if (choice.column !== null)
       return [
-        `[${kind}.${of.name}]`,
+        `[${kind}.${field.name}]`,
         `column = ${quoted(choice.column)}`,
         ...unit,
         ...(choice.fillsDown ? ["fill_down = true"] : []),
         ...(words.length > 0 ? [`words = { ${words.join(", ")} }`] : []),
       ];
-    if (choice.formula !== "") return [`[${kind}.${of.name}]`, `formula = ${quoted(choice.formula)}`];
-    if (choice.value !== "") return [`[${kind}.${of.name}]`, `value = ${quoted(choice.value)}`, ...unit];
-    return of.is_needed || kind === "quantities" ? [`[${kind}.${of.name}]`, 'value = "?"', ...unit] : [];
+    if (choice.formula !== "") return [`[${kind}.${field.name}]`, `formula = ${quoted(choice.formula)}`];
+    if (choice.value !== "") return [`[${kind}.${field.name}]`, `value = ${quoted(choice.value)}`, ...unit];
+    return ("is_needed" in field && field.is_needed) || kind === "quantities"
+      ? [`[${kind}.${field.name}]`, 'value = "?"', ...unit]
+      : [];
   };
   const isUsed = Object.values(choices.fields).some((choice) => choice.formula !== "" && choice.column === null);
   const quantities = isUsed ? guess.quantities : [];
   const tables = [
-    ...guess.fields.map((/** @type {any} */ of) => table("columns", of, choices.fields[of.name])),
-    ...quantities.map((/** @type {any} */ of) => table("quantities", of, choices.quantities[of.name])),
+    ...guess.fields.map((field) => table("columns", field, choices.fields[field.name])),
+    ...quantities.map((field) => table("quantities", field, choices.quantities[field.name])),
   ].filter((lines) => lines.length > 0);
   return `${[head.join("\n"), ...tables.map((lines) => lines.join("\n"))].join("\n\n")}\n`;
 }
 
 /**
  * The complaints about a field, and those about none that is shown.
- * @param {any[]} complaints
+ * @param {Complaint[]} complaints
  * @param {string[]} names of the fields that are shown
  */
 export function byField(complaints, names) {
-  const of = (/** @type {string} */ name) => complaints.filter((complaint) => complaint.field === name);
-  return { of, others: complaints.filter((complaint) => !names.includes(complaint.field)) };
+  const ofField = (/** @type {string} */ name) => complaints.filter((complaint) => complaint.field === name);
+  return { of: ofField, others: complaints.filter(({ field }) => !field || !names.includes(field)) };
 }
 
 /** A complaint in words: its place in the file, or nothing where its field says it. */
-export function words(/** @type {any} */ complaint) {
+export function words(/** @type {Complaint} */ complaint) {
   const place = complaint.cell
     ? t`cell ${complaint.cell}`
     : complaint.line && complaint.file !== "map.toml"

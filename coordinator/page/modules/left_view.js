@@ -8,8 +8,9 @@ const GROW_MS = 3000;
 /** So long nothing happens before a place is kept [ms]. */
 const REST_MS = 150;
 
-/** The title of a folded part, by which it is known. */
-const titleOf = (/** @type {Element} */ part) => part.querySelector("summary")?.textContent ?? "";
+/** What a folded part is known by: its own key where others have the same title, else its title. */
+const keyOf = (/** @type {HTMLElement} */ part) =>
+  part.dataset.fold ?? part.querySelector("summary")?.textContent ?? "";
 
 /** Parts that were open and are not there yet. @type {Set<string>} */
 let awaited = new Set();
@@ -21,7 +22,9 @@ export function keepLeftView() {
   const keep = () => {
     clearTimeout(timer);
     timer = setTimeout(() => {
-      const open = [...document.querySelectorAll("#content details[open]")].map(titleOf);
+      const open = [
+        .../** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("#content details[open]")),
+      ].map(keyOf);
       history.replaceState({ top: scrollY, open: [...new Set([...open, ...awaited])] }, "");
     }, REST_MS);
   };
@@ -46,7 +49,7 @@ export function arrive() {
   const content = /** @type {HTMLElement} */ (document.getElementById("content"));
   let isThere = top === 0;
   const look = () => {
-    for (const part of content.querySelectorAll("details")) if (awaited.delete(titleOf(part))) part.open = true;
+    for (const part of content.querySelectorAll("details")) if (awaited.delete(keyOf(part))) part.open = true;
     if (!isThere) scrollTo(0, top);
     isThere ||= Math.abs(scrollY - top) < 2;
     if (isThere && awaited.size === 0) end();

@@ -16,7 +16,12 @@ import { rimSpeed } from "./words/group.js";
  *   refuses. refusals: in the same order
  */
 
-/** @typedef {import("../types/api").components["schemas"]["PredictionGrid"]} Grid */
+/**
+ * @typedef {Schemas["PredictionGrid"]} Grid
+ * @typedef {Pick<MeasuredRow, "slip" | "wheel_load_n" | "sled_speed_m_s">} Run
+ * @typedef {Pick<Schemas["PredictedRun"], "refused"> & { quantities: Pick<Schemas["PredictedQuantity"], "name" |
+ *   "models" | "models_mean" | "models_measurement">[] }} PredictedRun
+ */
 
 /** The speed of the sled at a slip, from the speed that the rig held. */
 const sledSpeed = (/** @type {number} */ slip, /** @type {number} */ speed, /** @type {boolean} */ isRim) =>
@@ -31,8 +36,8 @@ export const rangesOf = (/** @type {Grid["reach"]} */ { slip, wheel_load_n: load
  * @returns {Table | null}
  */
 export function tableOf(/** @type {Grid} */ grid, /** @type {string} */ wheel) {
-  const found = grid.wheels.find((one) => one.wheel === wheel);
-  if (!found) return null;
+  const points = grid.wheels.find((ofWheel) => ofWheel.wheel === wheel)?.points;
+  if (!points) return null;
   const { slips, wheel_loads_n: loads, speeds_m_s: speeds, quantities } = grid;
   const spreadsOf = (/** @type {(number[] | null)[]} */ values) =>
     new Map(
@@ -41,16 +46,14 @@ export function tableOf(/** @type {Grid} */ grid, /** @type {string} */ wheel) {
         return value ? [[name, { mean: value[0], low: value[1], high: value[2], isMeasurement }]] : [];
       }),
     );
-  const at = found.points.map(({ values }) =>
-    values.some((value) => value !== null) ? spreadsOf(/** @type {any} */ (values)) : null,
-  );
+  const at = points.map(({ values }) => (values.some((value) => value !== null) ? spreadsOf(values) : null));
   return {
     wheel,
     slips,
     loads,
     speeds,
-    at: /** @type {Table["at"]} */ (at),
-    refusals: found.points.map(({ refused: one }) => one ?? null),
+    at,
+    refusals: points.map((point) => point.refused ?? null),
   };
 }
 
@@ -59,14 +62,14 @@ export function tableOf(/** @type {Grid} */ grid, /** @type {string} */ wheel) {
  * slips.
  */
 export function middle(
-  /** @type {any[]} */ runs,
+  /** @type {Run[]} */ runs,
   /** @type {Ranges} */ { slip, load, speed },
   /** @type {boolean} */ isRim,
 ) {
-  const speedOf = (/** @type {any} */ run) => (isRim ? rimSpeed(run) : run.sled_speed_m_s);
+  const speedOf = (/** @type {Run} */ run) => (isRim ? rimSpeed(run) : run.sled_speed_m_s);
   const off = (/** @type {number} */ value, /** @type {[number, number]} */ [low, high]) =>
     Math.abs(Math.log(value / Math.sqrt(low * high)));
-  const far = (/** @type {any} */ run) => off(run.wheel_load_n, load) + off(speedOf(run), speed);
+  const far = (/** @type {Run} */ run) => off(run.wheel_load_n, load) + off(speedOf(run), speed);
   const nearest = runs.reduce((best, run) => (far(run) < far(best) ? run : best));
   return {
     slip: Number((slip[0] + (slip[1] - slip[0]) / 3).toPrecision(2)),
@@ -81,13 +84,13 @@ export function middle(
  */
 export function curvePlan(
   /** @type {Place} */ { wheel, slip, load, speed },
-  /** @type {number[]} */ of,
+  /** @type {number[]} */ slipsOfGrid,
   /** @type {boolean} */ isRim,
 ) {
-  const slips = [...new Set([...of, slip])].sort((a, b) => a - b);
-  const rows = slips.map((one) => [wheel, one, load, sledSpeed(one, speed, isRim)]);
+  const slips = [...new Set([...slipsOfGrid, slip])].sort((a, b) => a - b);
+  const rows = slips.map((s) => [wheel, s, load, sledSpeed(s, speed, isRim)]);
   const plan = `${["wheel,slip,wheel_load_n,sled_speed_m_s", ...rows.map((row) => row.join(","))].join("\n")}\n`;
-  const fill = (/** @type {any[]} */ runs) => ({
+  const fill = (/** @type {PredictedRun[]} */ runs) => ({
     wheel,
     slips,
     loads: [load],
@@ -103,19 +106,17 @@ export function curvePlan(
  * runs, since curves and parabolas join them: those of new measurements where every run has them.
  * @returns {(Map<string, Spread> | null)[]}
  */
-function spreads(/** @type {any[]} */ runs) {
+function spreads(/** @type {PredictedRun[]} */ runs) {
   const noiseless = new Set(
-    runs.flatMap(({ quantities }) =>
-      quantities.filter((/** @type {any} */ q) => q.models_measurement === null).map((/** @type {any} */ q) => q.name),
-    ),
+    runs.flatMap(({ quantities }) => quantities.filter((q) => !q.models_measurement).map((q) => q.name)),
   );
   return runs.map(({ quantities }) =>
     quantities.length === 0
       ? null
       : new Map(
-          quantities.map((/** @type {any} */ q) => {
+          quantities.map((q) => {
             const isMeasurement = !noiseless.has(q.name);
-            const [low, high] = isMeasurement ? q.models_measurement : q.models;
+            const [low, high] = (isMeasurement && q.models_measurement) || q.models;
             return [q.name, { mean: q.models_mean, low, high, isMeasurement }];
           }),
         ),
@@ -144,7 +145,7 @@ export function curve({ slips, loads, speeds, at }, quantity, { load, speed }) {
       speeds.map((_, v) => at[(s * loads.length + l) * speeds.length + v]?.get(quantity)),
     );
     if (cells.some((row) => row.some((cell) => cell === undefined))) return [];
-    const of = (/** @type {"mean" | "low" | "high"} */ key) =>
+    const valueOf = (/** @type {"mean" | "low" | "high"} */ key) =>
       through(
         loads,
         cells.map((row) =>
@@ -159,9 +160,9 @@ export function curve({ slips, loads, speeds, at }, quantity, { load, speed }) {
     return [
       {
         slip,
-        mean: of("mean"),
-        low: of("low"),
-        high: of("high"),
+        mean: valueOf("mean"),
+        low: valueOf("low"),
+        high: valueOf("high"),
         isMeasurement: /** @type {Spread} */ (cells[0][0]).isMeasurement,
       },
     ];
@@ -182,7 +183,7 @@ export function refused({ slips, at, refusals }) {
     if (k > 0 && at[k - 1] === null) /** @type {[number, number]} */ (spans.at(-1))[1] = slip;
     else spans.push([slip, slip]);
   });
-  const refusal = refusals.find((one, k) => one !== null && at[k] === null);
+  const refusal = refusals.find((refusal, k) => refusal !== null && at[k] === null);
   return refusal ? { spans, isWhole: at.every((quantities) => quantities === null), refusal } : null;
 }
 
@@ -215,7 +216,7 @@ export function atSlip(points, slip) {
   if (k < 0) return null;
   const xs = points.map((point) => point.slip);
   const [h, u] = [xs[k + 1] - xs[k], (slip - xs[k]) / (xs[k + 1] - xs[k])];
-  const of = (/** @type {"mean" | "low" | "high"} */ key) => {
+  const valueOf = (/** @type {"mean" | "low" | "high"} */ key) => {
     const ys = points.map((point) => point[key]);
     const m = slopes(xs, ys);
     return (
@@ -225,7 +226,7 @@ export function atSlip(points, slip) {
       h * m[k + 1] * u * u * (u - 1)
     );
   };
-  return { mean: of("mean"), low: of("low"), high: of("high"), isMeasurement: points[k].isMeasurement };
+  return { mean: valueOf("mean"), low: valueOf("low"), high: valueOf("high"), isMeasurement: points[k].isMeasurement };
 }
 
 /** The conditions of a place that lie beyond the fitted runs. @returns {("slip" | "load" | "speed")[]} */

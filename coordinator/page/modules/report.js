@@ -19,7 +19,7 @@ import { modelName, modelOf, models } from "./words/model.js";
 const shown = JSON.parse(document.getElementById("shown")?.textContent ?? "{}");
 
 /** The views that the file has numbers for: a decision is made only where one is asked for. */
-const shownViews = (/** @type {any} */ model) =>
+const shownViews = (/** @type {Member} */ model) =>
   VIEWS.filter((v) => v.name !== "decide" || (model && recorded(path.decision(model.id))));
 
 function Report() {
@@ -58,9 +58,13 @@ function Report() {
  * When it was submitted, with how many runs, and by which program: `2026-11-27; 24 fitted runs, 16 held out; Grouser
  * 0.2.0`.
  */
-function facts(/** @type {any} */ study, /** @type {any} */ model, /** @type {any} */ provenance) {
+function facts(
+  /** @type {Study} */ study,
+  /** @type {Member | null} */ model,
+  /** @type {Answer<"get_provenance"> | null} */ provenance,
+) {
   const day = study.created_ms ? new Date(study.created_ms).toISOString().slice(0, 10) : null;
-  const line = study.ledger.find((/** @type {any} */ l) => l.calibration === model?.id);
+  const line = study.ledger.find((l) => l.calibration === model?.id);
   return [day, study.details?.author, line && runWords(line), model && campaignWords(model.id), provenance?.program]
     .filter(Boolean)
     .join("; ");
@@ -70,9 +74,9 @@ function facts(/** @type {any} */ study, /** @type {any} */ model, /** @type {an
 function campaignWords(/** @type {number} */ id) {
   const rows = recorded(path.comparison(id))?.rows ?? [];
   if (rows.length === 0) return null;
-  const wheels = [...new Set(rows.map((/** @type {any} */ row) => row.wheel))];
+  const wheels = [...new Set(rows.map((/** @type {MeasuredRow} */ row) => row.wheel))];
   const spans = varying(rows).map((axis) => {
-    const values = rows.map((/** @type {any} */ row) => row[axis.key] * axis.scale);
+    const values = rows.map((/** @type {MeasuredRow} */ row) => row[axis.key] * axis.scale);
     return spanWords(axis, Math.min(...values), Math.max(...values));
   });
   return `${wheels.length === 1 ? t`wheel ${wheels[0]}` : t`wheels ${wheels.join(", ")}`}; ${spans.join(", ")}`;
@@ -86,13 +90,12 @@ function printBrief() {
 }
 
 /** The models that were compared, and those that one of them grew into. */
-function lineage(/** @type {any} */ study) {
-  const names = (/** @type {any[]} */ members) => members.map((member) => modelName(study, member));
-  const isOther = (/** @type {any} */ member) =>
-    member.id !== study.models?.best &&
-    study.models?.models.some((/** @type {any} */ m) => m.calibration === member.id);
-  const compared = models(study).filter((/** @type {any} */ m) => m.id === study.models?.best || isOther(m));
-  const line = models(study).filter((/** @type {any} */ m) => !isOther(m));
+function lineage(/** @type {Study} */ study) {
+  const names = (/** @type {Member[]} */ members) => members.map((member) => modelName(study, member));
+  const isOther = (/** @type {Member} */ member) =>
+    member.id !== study.models?.best && study.models?.models.some((m) => m.calibration === member.id);
+  const compared = models(study).filter((m) => m.id === study.models?.best || isOther(m));
+  const line = models(study).filter((m) => !isOther(m));
   return [
     compared.length > 1 ? t`; compared: ${names(compared).join(", ")}` : "",
     study.members.length > 1 && line.length > (compared.length > 1 ? 1 : 0)

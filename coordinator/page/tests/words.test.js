@@ -8,6 +8,7 @@ import { byWeight, flagWords } from "../modules/part/flags.js";
 import { benchTest } from "../modules/words/bench_test.js";
 import { clauses } from "../modules/words/clauses.js";
 import { levels, levelWords } from "../modules/words/level.js";
+import { followable } from "../modules/words/model.js";
 import { measuredQuantities, statementOf } from "../modules/words/predicted_quantity.js";
 import {
   meanAndSpread,
@@ -359,4 +360,14 @@ test("a statement is about a quantity that was measured, in SI", () => {
   assert.equal(statementOf(quantities[1], "<", 12), `sinkage_m < ${metres}`);
   assert.equal(statementOf(quantities[1], "<", null), null);
   assert.equal(statementOf(undefined, "<", 12), null);
+});
+
+test("a campaign goes on from a finished calibration with draws, never from a fit or a search", () => {
+  const member = (kind, state = "finished") => ({ id: 1, name: "m", effects: [], kind, state });
+  const sample = member("sample");
+  assert.equal(followable(sample, null), sample);
+  assert.equal(followable(member("search"), sample), sample);
+  assert.equal(followable(member("sample", "running"), sample), sample);
+  assert.equal(followable(member("fit"), member("fit")), null);
+  assert.equal(followable(member("search"), null), null);
 });

@@ -26,11 +26,16 @@ const MOST_DENSE = 4;
 const MOST_NAMES = 10;
 
 /**
- * @typedef {{ name: string, colour: string | null, rows: any[], isGhost?: boolean }} Layer
+ * @typedef {{ name: string, colour: string | null, rows: MeasuredRow[], isGhost?: boolean }} Layer
  *   colour: of all its lines; null: each group of runs has its own.
  * @typedef {import("./surface_curves.js").SurfaceCurves} Moving
- * @param {{ channel: string, wheel: string | null, measurements: any[], layers: Layer[], axis:
- *   import("./condition.js").ConditionAxis, name: string, moving?: Moving, title?: string, isLow?: boolean }}
+ * @typedef {ReturnType<typeof shown>} Quantity
+ * @typedef {import("../words/group.js").Group<MeasuredRow>} RunGroup
+ * @typedef {Pick<MeasuredRow, "slip" | "wheel_load_n" | "sled_speed_m_s" | "measured" | "predicted" | "q05" | "q95">}
+ *   MeasuredNumbers
+ * @typedef {(key: keyof MeasuredNumbers) => (row: MeasuredRow) => number} ValueOf
+ * @param {{ channel: string, wheel: string | null, measurements: MeasuredRow[], layers: Layer[], axis:
+ *   ConditionAxis, name: string, moving?: Moving, title?: string, isLow?: boolean }}
  *   properties layers: models, each with the rows of its comparison. measurements: each of them once. isLow: whether
  *   the picture has the smallest readable height.
  */
@@ -45,9 +50,9 @@ export function ChannelChart({
   title: stated,
   isLow = false,
 }) {
-  const own = (/** @type {any[]} */ rows) =>
+  const ofPicture = (/** @type {MeasuredRow[]} */ rows) =>
     rows.filter((r) => r.channel === channel && (wheel === null || r.wheel === wheel));
-  const measured = own(measurements);
+  const measured = ofPicture(measurements);
   const quantity = shown(measured[0].unit);
   const found = useMemo(() => groups(measured, axis.key), [measurements, channel, wheel, axis.key]);
   const what = [channelName(channel), wheel === null ? "" : t`wheel ${wheel}`].filter(Boolean).join(", ");
@@ -55,7 +60,7 @@ export function ChannelChart({
   const draw = (/** @type {number} */ width) =>
     picture({
       width,
-      layers: layers.map((l) => ({ ...l, rows: own(l.rows) })),
+      layers: layers.map((l) => ({ ...l, rows: ofPicture(l.rows) })),
       measured,
       found,
       axis,
@@ -64,7 +69,7 @@ export function ChannelChart({
       moving,
       isLow,
     });
-  const drawn = (/** @type {any} */ plot) => {
+  const drawn = (/** @type {Picture} */ plot) => {
     const release = pointable(plot, { runsIn, words: (from, to) => spanWords(axis, from, to) });
     const curves = found.groups.map((group) => ({ rows: group.rows, stroke: colour(group.colour) }));
     const detach = moving?.attach(plot, curves, (r) => r[axis.key] * axis.scale, quantity.scale);
@@ -106,7 +111,7 @@ export function ChannelChart({
       name=${fileName(name, channel, wheel ?? "")}
       deps=${[layers.map((l) => `${l.name} ${l.rows.length}`).join(), layers.at(-1)?.rows, measurements, axis.key]}
       draw=${draw}
-      rows=${() => table(layers, own)}
+      rows=${() => table(layers, ofPicture)}
       onDrawn=${drawn}
       legend=${html`
         ${found.single && html`<span>${found.single}</span>`}
@@ -148,9 +153,9 @@ export function ChannelChart({
 }
 
 /** Measured and computed values as rows of a file. */
-function table(/** @type {Layer[]} */ layers, /** @type {(rows: any[]) => any[]} */ own) {
+function table(/** @type {Layer[]} */ layers, /** @type {(rows: MeasuredRow[]) => MeasuredRow[]} */ ofPicture) {
   return layers.flatMap((layer) =>
-    own(layer.rows).map((r) => ({
+    ofPicture(layer.rows).map((r) => ({
       model: layer.name,
       run: r.run,
       use: r.use,
@@ -170,13 +175,13 @@ function table(/** @type {Layer[]} */ layers, /** @type {(rows: any[]) => any[]}
 }
 
 /**
- * @param {{ width: number, layers: Layer[], measured: any[], found: ReturnType<typeof groups>, axis: any, quantity:
- *   any, channel: string, moving?: Moving, isLow: boolean }} properties
+ * @param {{ width: number, layers: Layer[], measured: MeasuredRow[], found: ReturnType<typeof groups<MeasuredRow>>,
+ *   axis: ConditionAxis, quantity: Quantity, channel: string, moving?: Moving, isLow: boolean }} properties
  */
 function picture({ width, layers, measured, found, axis, quantity, channel, moving, isLow }) {
-  const x = (/** @type {any} */ r) => r[axis.key] * axis.scale;
-  const value = (/** @type {string} */ key) => (/** @type {any} */ r) =>
-    r[key] === null || r[key] === undefined ? NaN : r[key] * quantity.scale;
+  const x = (/** @type {MeasuredRow} */ r) => r[axis.key] * axis.scale;
+  /** @type {ValueOf} */
+  const value = (key) => (r) => (r[key] ?? NaN) * quantity.scale;
   const place = new Map(found.groups.flatMap((group) => group.rows.map((r) => [r.run, group])));
   const isMany = measured.length > MANY;
   const hasBands = layers.length === 1 || layers.length * found.groups.length <= MOST_BANDS;
@@ -184,13 +189,13 @@ function picture({ width, layers, measured, found, axis, quantity, channel, movi
     layerMarks({ ...layer, hasBands: hasBands && !layer.isGhost }, place, x, value, isMany),
   );
   const isLayered = layers.some((l) => l.colour !== null && !l.isGhost);
-  const dots = (/** @type {any[]} */ rows, /** @type {any} */ look) =>
+  const dots = (/** @type {MeasuredRow[]} */ rows, /** @type {(colour: string) => object} */ look) =>
     found.groups.map((group) => {
-      const own = rows.filter((r) => place.get(r.run) === group);
+      const members = rows.filter((r) => place.get(r.run) === group);
       const sign = isLayered
         ? { symbol: symbol(group.colour), ...look("var(--measured)") }
         : { symbol: symbol(group.symbol), ...look(colour(group.colour)) };
-      return Plot.dot(own, byRun(own, { x, y: value("measured"), r: 4.2, ...sign }, isMany));
+      return Plot.dot(members, byRun(members, { x, y: value("measured"), r: 4.2, ...sign }, isMany));
     });
   // No edges where many signs are one path: they would cover neighbouring signs.
   const edge = isMany ? {} : { stroke: "var(--paper)", strokeWidth: 0.7 };
@@ -198,7 +203,7 @@ function picture({ width, layers, measured, found, axis, quantity, channel, movi
     name: layer.name,
     ofRun: new Map(layer.rows.map((r) => [r.run, r.predicted])),
   }));
-  const tip = (/** @type {any} */ r) =>
+  const tip = (/** @type {MeasuredRow} */ r) =>
     [
       runName(r),
       conditionWords(r),
@@ -232,11 +237,11 @@ function picture({ width, layers, measured, found, axis, quantity, channel, movi
       ...marks,
       ...dots(
         measured.filter((r) => r.use !== "holdout"),
-        (/** @type {string} */ c) => ({ fill: c, ...edge }),
+        (c) => ({ fill: c, ...edge }),
       ),
       ...dots(
         measured.filter((r) => r.use === "holdout"),
-        (/** @type {string} */ c) => ({ fill: "var(--paper)", stroke: c, strokeWidth: 1.8 }),
+        (c) => ({ fill: "var(--paper)", stroke: c, strokeWidth: 1.8 }),
       ),
       // The words are made of the run that is pointed at alone.
       Plot.tip(
@@ -244,7 +249,7 @@ function picture({ width, layers, measured, found, axis, quantity, channel, movi
         Plot.pointer({
           x,
           y: value("measured"),
-          title: (/** @type {any} */ r) => r,
+          title: (/** @type {MeasuredRow} */ r) => r,
           format: { title: tip },
           maxRadius: 14,
           fill: "var(--panel)",
@@ -258,13 +263,13 @@ function picture({ width, layers, measured, found, axis, quantity, channel, movi
 /** The least and the greatest value of a picture whose curves move. */
 function reach(
   /** @type {Layer[]} */ layers,
-  /** @type {any[]} */ measured,
-  /** @type {any} */ quantity,
+  /** @type {MeasuredRow[]} */ measured,
+  /** @type {Quantity} */ quantity,
   /** @type {Moving} */ moving,
 ) {
   const ofLayers = layers.flatMap((layer) => layer.rows.flatMap((r) => [r.predicted, r.q05, r.q95]));
   const values = [...ofLayers, ...measured.flatMap((r) => [r.measured, ...moving.rangeOf(r)])].filter(
-    (value) => value !== null && value !== undefined,
+    (value) => typeof value === "number",
   );
   return [Math.min(...values) * quantity.scale, Math.max(...values) * quantity.scale];
 }
@@ -272,14 +277,14 @@ function reach(
 /** The lines of a model: one for each group of runs. */
 function layerMarks(
   /** @type {Layer & { hasBands: boolean }} */ layer,
-  /** @type {Map<string, any>} */ place,
-  /** @type {any} */ x,
-  /** @type {any} */ value,
+  /** @type {Map<string, RunGroup>} */ place,
+  /** @type {(row: MeasuredRow) => number} */ x,
+  /** @type {ValueOf} */ value,
   /** @type {boolean} */ isMany,
 ) {
-  const known = layer.rows.filter((r) => r.predicted !== null && r.predicted !== undefined && place.has(r.run));
-  const all = [...new Set(known.map((r) => place.get(r.run)))];
-  return all.flatMap((group) => {
+  const known = layer.rows.filter((r) => r.predicted !== null && r.predicted !== undefined);
+  const all = new Set(known.flatMap((r) => place.get(r.run) ?? []));
+  return [...all].flatMap((group) => {
     const rows = known.filter((r) => place.get(r.run) === group);
     const stroke = layer.colour ?? colour(group.colour);
     const dash = layer.isGhost ? { strokeDasharray: "4 3", strokeWidth: 2.2 } : { strokeWidth: 1.6 };
@@ -293,7 +298,7 @@ function layerMarks(
                 ...band,
                 curve: CURVE,
                 fill: stroke,
-                fillOpacity: all.length > MOST_DENSE ? 0.08 : 0.16,
+                fillOpacity: all.size > MOST_DENSE ? 0.08 : 0.16,
               }),
             ]
           : []),
@@ -330,18 +335,17 @@ function layerMarks(
 }
 
 /** Rows of one place become their mean: repeats do not make a line go up and down. */
-function atEqual(/** @type {any[]} */ rows, /** @type {(r: any) => number} */ x) {
+function atEqual(/** @type {MeasuredRow[]} */ rows, /** @type {(row: MeasuredRow) => number} */ x) {
   return places(rows, x).map((all) => {
-    const of = (/** @type {string} */ key) =>
-      all.some((r) => r[key] === null || r[key] === undefined) ? null : meanOf(all, (r) => r[key]);
+    const mean = (/** @type {keyof MeasuredNumbers} */ key) => meanOf(all, (r) => r[key] ?? NaN);
     return {
       ...all[0],
-      slip: of("slip"),
-      wheel_load_n: of("wheel_load_n"),
-      sled_speed_m_s: of("sled_speed_m_s"),
-      predicted: of("predicted"),
-      q05: of("q05"),
-      q95: of("q95"),
+      slip: mean("slip"),
+      wheel_load_n: mean("wheel_load_n"),
+      sled_speed_m_s: mean("sled_speed_m_s"),
+      predicted: mean("predicted"),
+      q05: mean("q05"),
+      q95: mean("q95"),
     };
   });
 }

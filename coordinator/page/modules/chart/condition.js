@@ -4,8 +4,6 @@ import { t } from "../language/language.js";
 import { slipUnit } from "../units.js";
 import { shown } from "../words/quantity.js";
 
-/** @typedef {{ key: string, title: string, short: string, unit: string, scale: number }} ConditionAxis */
-
 /** @type {ConditionAxis[]} */
 export const CONDITIONS = [
   { key: "slip", title: t`slip`, short: t`slip`, ...slipUnit },
@@ -15,12 +13,16 @@ export const CONDITIONS = [
 ];
 
 /** The conditions that vary among rows; slip always stands among them. */
-export function varying(/** @type {any[]} */ rows) {
+export function varying(/** @type {MeasuredRow[]} */ rows) {
   return CONDITIONS.filter(({ key }) => key === "slip" || new Set(rows.map((row) => row[key])).size > 1);
 }
 
 /** `slip 0.05 to 0.2`. */
-export function spanWords(/** @type {ConditionAxis} */ axis, /** @type {number} */ from, /** @type {number} */ to) {
+export function spanWords(
+  /** @type {Pick<ConditionAxis, "short" | "unit">} */ axis,
+  /** @type {number} */ from,
+  /** @type {number} */ to,
+) {
   const text = (/** @type {number} */ v) => String(Number(v.toPrecision(3))).replace("-", "−");
   return `${axis.short} ${text(from)}${t` to `}${text(to)}${axis.unit === "1" ? "" : ` ${axis.unit}`}`;
 }

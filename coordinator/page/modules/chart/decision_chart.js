@@ -16,16 +16,19 @@ const MARGIN = 24;
 /** Two standard errors to either side. */
 const ERRORS = 2;
 
+/** @typedef {Schemas["OptionLoss"]} Option */
+
 /** @param {{ decision: import("../view/decide.js").Decision, name: string }} properties */
 export function DecisionChart({ decision, name }) {
   const { options, best } = decision;
   const names = options.map((option) => option.name);
   const title = t`Expected loss of each option`;
-  const fill = (/** @type {any} */ option) => (option.name === best ? "var(--series-1)" : "var(--series-0)");
+  const fill = (/** @type {Option} */ option) => (option.name === best ? "var(--series-1)" : "var(--series-0)");
   const draw = (/** @type {number} */ width) => {
     const left = Math.min(MARGIN + Math.max(...names.map(textWidth)), NAMES * width);
-    const most = Math.floor((left - MARGIN) / textWidth("m"));
-    const short = (/** @type {string} */ text) => (text.length <= most ? text : `${text.slice(0, most - 1)}…`);
+    const maxLength = Math.floor((left - MARGIN) / textWidth("m"));
+    const short = (/** @type {string} */ text) =>
+      text.length <= maxLength ? text : `${text.slice(0, maxLength - 1)}…`;
     return Plot.plot({
       width,
       height: 56 + STEP * options.length,
@@ -47,16 +50,16 @@ export function DecisionChart({ decision, name }) {
       marks: [
         Plot.ruleY(options, {
           y: "name",
-          x1: (/** @type {any} */ o) => o.interval[0],
-          x2: (/** @type {any} */ o) => o.interval[1],
+          x1: (/** @type {Option} */ o) => o.interval[0],
+          x2: (/** @type {Option} */ o) => o.interval[1],
           stroke: fill,
           strokeWidth: 2.5,
           strokeOpacity: 0.55,
         }),
         Plot.ruleY(options, {
           y: "name",
-          x1: (/** @type {any} */ o) => o.expected_loss - ERRORS * o.expected_loss_se,
-          x2: (/** @type {any} */ o) => o.expected_loss + ERRORS * o.expected_loss_se,
+          x1: (/** @type {Option} */ o) => o.expected_loss - ERRORS * o.expected_loss_se,
+          x2: (/** @type {Option} */ o) => o.expected_loss + ERRORS * o.expected_loss_se,
           stroke: fill,
           strokeWidth: 7,
         }),
@@ -64,7 +67,7 @@ export function DecisionChart({ decision, name }) {
           y: "name",
           x: "expected_loss",
           r: 5,
-          fill: (/** @type {any} */ o) => (o.is_feasible ? fill(o) : "var(--paper)"),
+          fill: (/** @type {Option} */ o) => (o.is_feasible ? fill(o) : "var(--paper)"),
           stroke: fill,
           strokeWidth: 2,
         }),

@@ -11,10 +11,11 @@ const files = () => import("./download.js");
 /** @typedef {Record<string, string | number | boolean | null | undefined>} Row */
 
 /**
+ * @template {Element} Drawn
  * @param {{
  *   title: string, name: string, deps: unknown[],
- *   draw: (width: number) => Element & { scale?: (name: string) => any },
- *   rows?: () => Row[], note?: unknown, legend?: unknown, onDrawn?: (plot: any) => (() => void) | void,
+ *   draw: (width: number) => Drawn,
+ *   rows?: () => Row[], note?: unknown, legend?: unknown, onDrawn?: (plot: Drawn) => (() => void) | void,
  * }} properties
  *   title: what a reader who cannot see it is told. name: of the files. draw: the picture at a width [px].
  *   rows: its numbers. onDrawn: adds listeners; what it returns removes them.
@@ -87,7 +88,7 @@ function roam(/** @type {KeyboardEvent} */ event) {
   const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
   if (step === undefined) return;
   const buttons = [.../** @type {HTMLElement} */ (event.currentTarget).querySelectorAll("button")];
-  const at = buttons.indexOf(/** @type {any} */ (event.target));
+  const at = buttons.indexOf(/** @type {HTMLButtonElement} */ (event.target));
   buttons[(at + step + buttons.length) % buttons.length].focus();
 }
 

@@ -3,7 +3,7 @@
 import { html } from "../html.js";
 import { symbol } from "./colour.js";
 
-const GLYPHS = /** @type {Record<string, any>} */ ({
+const GLYPHS = /** @type {Record<string, unknown>} */ ({
   circle: html`<circle cx="8" cy="8" r="4" />`,
   square: html`<rect x="4" y="4" width="8" height="8" />`,
   triangle: html`<path d="M8 3l5 9H3z" />`,

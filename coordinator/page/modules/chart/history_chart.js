@@ -7,23 +7,20 @@ import { colour } from "./colour.js";
 import { Entry, Figure, fileName } from "./figure.js";
 import { Plot, STYLE } from "./library.js";
 
-/** @param {{ history: any, name: string }} properties one channel of one run */
+/** @param {{ history: ChannelHistory, name: string }} properties one channel of one run */
 export function HistoryChart({ history, name }) {
   const quantity = shown(history.unit);
-  const points = (/** @type {any} */ series) =>
-    series.t_s.map((/** @type {number} */ t, /** @type {number} */ k) => ({
-      t,
-      value: series.value[k] * quantity.scale,
-    }));
+  const points = (/** @type {{ t_s: number[], value: number[] }} */ series) =>
+    series.t_s.map((t, k) => ({ t, value: series.value[k] * quantity.scale }));
   const lines = [
     ...(history.measured ? [{ name: t`measured`, stroke: "var(--measured)", points: points(history.measured) }] : []),
-    ...history.model.map((/** @type {any} */ m, /** @type {number} */ k) => ({
+    ...history.model.map((m, k) => ({
       name: m.label,
       stroke: colour(k),
       points: points(m),
     })),
   ];
-  const windows = [history.measured, ...history.model].filter((s) => s?.window_s).map((s) => s.window_s);
+  const windows = history.measured ? [history.measured.window_s] : [];
   const draw = (/** @type {number} */ width) =>
     Plot.plot({
       width,
@@ -35,15 +32,13 @@ export function HistoryChart({ history, name }) {
       x: { label: t`time [s]`, labelArrow: "none", labelAnchor: "center" },
       y: { label: titled(channelName(history.channel), quantity.unit), labelArrow: "none", nice: true },
       marks: [
-        ...windows
-          .slice(0, 1)
-          .map(([from, to]) => Plot.rectY([0], { x1: from, x2: to, fill: "currentColor", fillOpacity: 0.06 })),
+        ...windows.map(([from, to]) => Plot.rectY([0], { x1: from, x2: to, fill: "currentColor", fillOpacity: 0.06 })),
         ...lines.map((line) => Plot.lineY(line.points, { x: "t", y: "value", stroke: line.stroke, strokeWidth: 1.3 })),
       ],
     });
   const rows = () =>
     lines.flatMap((line) =>
-      line.points.map((/** @type {any} */ p) => ({
+      line.points.map((p) => ({
         series: line.name,
         t_s: p.t,
         [`${history.channel} [${quantity.unit}]`]: p.value,

@@ -11,6 +11,9 @@ import { Figure, fileName } from "./figure.js";
 import { Plot, STYLE } from "./library.js";
 import { separatedWords } from "../words/few.js";
 
+/** @typedef {import("../words/condition.js").Condition} Condition */
+/** @typedef {Schemas["RunInformation"]} RunInformation */
+
 /** What is drawn: an estimate below 0 is 0 within its error. */
 export const shownNats = (/** @type {number} */ nats) => Math.max(0, nats);
 
@@ -18,22 +21,20 @@ export const shownNats = (/** @type {number} */ nats) => Math.max(0, nats);
 export const natsWords = (/** @type {number} */ nats) =>
   nats < 0 ? t`0 nats within the error of the estimate, ${digits(nats, 2)}` : `${digits(nats, 2)} nats`;
 
-/** @param {{ record: any, name: string }} properties */
+/** @param {{ record: Discovery, name: string }} properties */
 export function InformationMap({ record, name }) {
   const runs = record.information ?? [];
   if (runs.length === 0) return html`<${ProposedRuns} record=${record} />`;
   const speeds = levels(runs.map(rimSpeed));
-  const max = Math.max(...runs.map((/** @type {any} */ r) => r.nats), 1e-6);
-  const hasNegative = runs.some((/** @type {any} */ r) => r.nats < 0);
+  const max = Math.max(...runs.map((r) => r.nats), 1e-6);
+  const hasNegative = runs.some((r) => r.nats < 0);
   const draw = (/** @type {number} */ k) => (/** @type {number} */ width) => {
-    const ofSpeed = runs.filter((/** @type {any} */ r) => levelOf(speeds, rimSpeed(r)) === k);
-    const isOfSpeed = (/** @type {any} */ run) => ofSpeed.some((/** @type {any} */ other) => isSame(other, run));
-    const next = record.next_runs
-      .map((/** @type {any} */ r, /** @type {number} */ n) => ({ ...r, n: n + 1 }))
-      .filter(isOfSpeed);
+    const ofSpeed = runs.filter((r) => levelOf(speeds, rimSpeed(r)) === k);
+    const isOfSpeed = (/** @type {Condition} */ run) => ofSpeed.some((other) => isSame(other, run));
+    const next = record.next_runs.map((r, n) => ({ ...r, n: n + 1 })).filter(isOfSpeed);
     const slipWord = (/** @type {number} */ slip) => minus(Number((slip * slipUnit.scale).toPrecision(3)));
     const loadWord = (/** @type {number} */ load) => digits(load * shown("N").scale);
-    const told = (/** @type {any} */ r) => [natsWords(r.nats), conditionWords(r)].join("; ");
+    const told = (/** @type {RunInformation} */ r) => [natsWords(r.nats), conditionWords(r)].join("; ");
     return Plot.plot({
       width,
       height: 210,
@@ -59,17 +60,14 @@ export function InformationMap({ record, name }) {
         type: "linear",
         domain: [0, max],
         clamp: true,
-        range: ["var(--panel)", "var(--accent)"],
-        interpolate: /** @type {any} */ (
-          (/** @type {string} */ from, /** @type {string} */ to) => (/** @type {number} */ share) =>
-            `color-mix(in srgb, ${to} ${(100 * share).toFixed(1)}%, ${from})`
-        ),
+        interpolate: (/** @type {number} */ share) =>
+          `color-mix(in srgb, var(--accent) ${(100 * share).toFixed(1)}%, var(--panel))`,
       },
       marks: [
         Plot.cell(ofSpeed, {
           x: "slip",
           y: "wheel_load_n",
-          fill: (/** @type {any} */ r) => shownNats(r.nats),
+          fill: (/** @type {RunInformation} */ r) => shownNats(r.nats),
           inset: 0.5,
           title: told,
         }),
@@ -100,7 +98,7 @@ export function InformationMap({ record, name }) {
             name=${fileName(name, "next-runs", k + 1)}
             deps=${[record]}
             draw=${draw(k)}
-            rows=${() => runs.filter((/** @type {any} */ r) => levelOf(speeds, rimSpeed(r)) === k)}
+            rows=${() => runs.filter((r) => levelOf(speeds, rimSpeed(r)) === k)}
           />
         `,
       )}
@@ -109,15 +107,15 @@ export function InformationMap({ record, name }) {
   `;
 }
 
-const isSame = (/** @type {any} */ a, /** @type {any} */ b) =>
+const isSame = (/** @type {Condition} */ a, /** @type {Condition} */ b) =>
   a.slip === b.slip && a.wheel_load_n === b.wheel_load_n && a.sled_speed_m_s === b.sled_speed_m_s;
 
-function ProposedRuns(/** @type {{ record: any }} */ { record }) {
+function ProposedRuns(/** @type {{ record: Discovery }} */ { record }) {
   if (record.next_runs.length === 0) return null;
   return html`
     <ol>
       ${record.next_runs.map(
-        (/** @type {any} */ r, /** @type {number} */ k) => html`
+        (r, k) => html`
           <li>
             ${conditionWords(r)} (${t`rim ${speedWords(rimSpeed(r))}`}):${" "}
             ${

@@ -18,7 +18,7 @@ const UNITS = /** @type {Record<string, string>} */ ({
   sinkage: "m",
 });
 
-/** @param {{ law: any, name: string, add: (() => void) | null }} properties */
+/** @param {{ law: Outside, name: string, add: (() => void) | null }} properties */
 export function LawChart({ law, name, add }) {
   const isFactor = ["pressure", "shear"].includes(law.acts_on);
   const unit = UNITS[law.depends_on] ?? "1";
@@ -57,7 +57,7 @@ export function LawChart({ law, name, add }) {
         deps=${[law]}
         draw=${draw}
         rows=${() =>
-          law.curve.map((/** @type {[number, number]} */ [x, y]) => ({
+          law.curve.map(([x, y]) => ({
             [law.depends_on]: x,
             [isFactor ? "factor" : "addition"]: y,
           }))}
@@ -72,7 +72,7 @@ export function LawChart({ law, name, add }) {
 }
 
 /** The fitted forms of a law; a record of an earlier version has none. */
-function Forms(/** @type {{ forms: any[] }} */ { forms }) {
+function Forms(/** @type {{ forms: Schemas["FittedForm"][] }} */ { forms }) {
   if (forms.length < 2) return null;
   return html`
     <h3>Forms of this law</h3>

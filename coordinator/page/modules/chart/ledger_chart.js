@@ -14,7 +14,7 @@ const LEAST_STEP = 40;
 const RIGHT = 30;
 /** A straight line of a length. */
 const DASH = {
-  draw: (/** @type {any} */ context, /** @type {number} */ length) => {
+  draw: (/** @type {CanvasPath} */ context, /** @type {number} */ length) => {
     context.moveTo(0, 0);
     context.lineTo(0, -length);
   },
@@ -22,9 +22,9 @@ const DASH = {
 
 /** @typedef {import("../words/ledger.js").LedgerLine & { colour: string }} LedgerLine */
 
-/** @param {{ study: any, lines: LedgerLine[] }} properties */
+/** @param {{ study: Study, lines: LedgerLine[] }} properties */
 export function LedgerCharts({ study, lines }) {
-  const channels = CHANNELS.filter((channel) => lines.some(({ line }) => line.error.fit[channel]));
+  const channels = CHANNELS.filter((channel) => lines.some(({ line }) => line.error.fit?.[channel]));
   return html`
     ${
       dataSets(lines).length > 1 &&
@@ -44,7 +44,12 @@ const LOOKS = /** @type {const} */ ([
   { use: "holdout", words: t`held out`, dash: "3 3" },
 ]);
 
-function LedgerChart(/** @type {{ study: any, lines: LedgerLine[], channel: string }} */ { study, lines, channel }) {
+/**
+ * @typedef {{ name: string, look: (typeof LOOKS)[number], colour: string, part: number, rmse: number, runs: number }}
+ *   ErrorPoint
+ */
+
+function LedgerChart(/** @type {{ study: Study, lines: LedgerLine[], channel: Channel }} */ { study, lines, channel }) {
   const quantity = shown(unitOf(channel));
   const changes = changesOfRuns(lines);
   const points = lines.flatMap(({ name, line, colour }, k) =>
@@ -55,11 +60,11 @@ function LedgerChart(/** @type {{ study: any, lines: LedgerLine[], channel: stri
         : [];
     }),
   );
-  const sigma = study.fixed_sigma?.[channel];
-  const floor = sigma ? (sigma.sd ?? sigma) * quantity.scale : null;
+  const sigma = study.fixed_sigma[channel];
+  const floor = sigma ? sigma.sd * quantity.scale : null;
   const baseline = lines.flatMap(({ name, line }) => {
-    const rmse = line.baseline?.holdout?.[channel]?.rmse;
-    return rmse === undefined || rmse === null ? [] : [{ name, rmse: rmse * quantity.scale }];
+    const rmse = line.baseline.holdout?.[channel]?.rmse;
+    return rmse === undefined ? [] : [{ name, rmse: rmse * quantity.scale }];
   });
   const draw = (/** @type {number} */ width) =>
     picture({
@@ -111,14 +116,14 @@ function LedgerChart(/** @type {{ study: any, lines: LedgerLine[], channel: stri
 }
 
 /**
- * @param {{ width: number, lines: LedgerLine[], points: any[], floor: number | null, baseline: { name: string, rmse:
- *   number }[], title: string }} properties
+ * @param {{ width: number, lines: LedgerLine[], points: ErrorPoint[], floor: number | null, baseline: { name: string,
+ *   rmse: number }[], title: string }} properties
  */
 function picture({ width, lines, points, floor, baseline, title }) {
   const names = lines.map((l) => l.name);
   const labels = tickLabels({ names: lines.map((line, k) => step(lines[k - 1], line)), width, left: 56, right: RIGHT });
   // The greater error of a model has its value above, the lesser below.
-  const isUpper = (/** @type {any} */ p) =>
+  const isUpper = (/** @type {ErrorPoint} */ p) =>
     points.every(
       (other) =>
         other.name !== p.name ||
@@ -126,12 +131,12 @@ function picture({ width, lines, points, floor, baseline, title }) {
         other.rmse < p.rmse ||
         (other.rmse === p.rmse && other.look.use === "fit"),
     );
-  const value = (/** @type {any[]} */ some, /** @type {number} */ dy) =>
+  const value = (/** @type {ErrorPoint[]} */ some, /** @type {number} */ dy) =>
     Plot.text(some, {
       x: "name",
       y: "rmse",
       dy,
-      text: (/** @type {any} */ p) => (labels.step < 1.5 * LEAST_STEP ? digits(p.rmse, 2) : errorWords(p.rmse)),
+      text: (/** @type {ErrorPoint} */ p) => (labels.step < 1.5 * LEAST_STEP ? digits(p.rmse, 2) : errorWords(p.rmse)),
       fill: "currentColor",
       stroke: "var(--paper)",
       strokeWidth: 5,

@@ -8,9 +8,9 @@ import { colour } from "./colour.js";
  * The lines of the ledger with their names and colours.
  * @returns {(import("../words/ledger.js").LedgerLine & { colour: string })[]}
  */
-export function ledgerLines(/** @type {any} */ study) {
-  return study.ledger.map((/** @type {any} */ line, /** @type {number} */ k) => {
-    const member = study.members.find((/** @type {any} */ m) => m.id === line.calibration);
+export function ledgerLines(/** @type {Study} */ study) {
+  return study.ledger.map((line, k) => {
+    const member = study.members.find((m) => m.id === line.calibration);
     return {
       id: line.calibration,
       name: member ? modelName(study, member) : t`calibration ${line.calibration}`,

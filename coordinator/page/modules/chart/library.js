@@ -2,8 +2,12 @@
 
 import { language } from "../language/language.js";
 
-export const Plot = /** @type {typeof import("@observablehq/plot")} */ (/** @type {any} */ (globalThis).Plot);
-export const d3 = /** @type {typeof import("d3")} */ (/** @type {any} */ (globalThis).d3);
+const libraries =
+  /** @type {typeof globalThis & { Plot: typeof import("@observablehq/plot"), d3: typeof import("d3") }} */ (
+    globalThis
+  );
+
+export const { Plot, d3 } = libraries;
 
 // Ticks have the decimal mark of the page: 2,000 is two for a German reader.
 if (language === "de")

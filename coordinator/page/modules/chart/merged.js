@@ -93,8 +93,7 @@ function partsOf(/** @type {string} */ d) {
  * The marks of a group by the element of the first one: their places and colours are those that the scales give.
  * @param {{ tagName: string, getAttribute: (name: string) => string | null }} first
  * @param {ArrayLike<number>} index of the data
- * @param {Record<"x" | "y" | "y1" | "y2", number[] | undefined> & Record<"fill" | "stroke", string[] | undefined>}
- *   values
+ * @param {Partial<Record<"x" | "y" | "y1" | "y2", number[]> & Record<"fill" | "stroke", string[]>>} values
  * @param {(place: number) => string} runOf
  * @returns {Mark[]}
  */
@@ -126,7 +125,7 @@ export function marksLike(first, index, { x = [], y, y1, y2, fill, stroke }, run
 /**
  * Replaces the elements of a group by one path for each colour of its marks; on an event `light` with runs, those stand
  * out.
- * @param {SVGGElement} group
+ * @param {SVGElement} group
  * @param {Mark[]} marks
  */
 export function merge(group, marks) {

@@ -11,11 +11,11 @@ let frames = 0;
 
 /**
  * Adds the curves to a picture.
- * @param {SVGSVGElement & { scale: (name: string) => any }} plot
- * @param {{ rows: any[], stroke: string }[]} groups
- * @param {(row: any) => number} x
- * @returns {(y: (row: any) => number | undefined, isBeyond: boolean) => void} moves the curves to the value of each
- *   row, in the unit of the axis; they are dashed if the values lie beyond the draws
+ * @param {Picture} plot
+ * @param {{ rows: MeasuredRow[], stroke: string }[]} groups
+ * @param {(row: MeasuredRow) => number} x
+ * @returns {(y: (row: MeasuredRow) => number | undefined, isBeyond: boolean) => void} moves the curves to the value of
+ *   each row, in the unit of the axis; they are dashed if the values lie beyond the draws
  */
 export function movingCurves(plot, groups, x) {
   const [across, up] = ["x", "y"].map((name) => plot.scale(name));
@@ -28,19 +28,12 @@ export function movingCurves(plot, groups, x) {
   return (y, isBeyond) => {
     layer.classList.toggle("beyond", isBeyond);
     for (const curve of curves) {
-      const known = curve.places
-        .map((rows) => rows.filter((row) => y(row) !== undefined))
-        .filter((rows) => rows.length > 0);
-      const points = known.map((rows) => [
-        across.apply(meanOf(rows, x)),
-        up.apply(meanOf(rows, /** @type {(row: any) => number} */ (y))),
-      ]);
-      curve.path.setAttribute(
-        "d",
-        points.length >= LEAST_LINE
-          ? (line(/** @type {[number, number][]} */ (points)) ?? "")
-          : points.map(cross).join(""),
-      );
+      const points = curve.places.flatMap((rows) => {
+        const known = rows.filter((row) => y(row) !== undefined);
+        if (known.length === 0) return [];
+        return [pointAt(across.apply(meanOf(known, x)), up.apply(meanOf(known, (row) => y(row) ?? NaN)))];
+      });
+      curve.path.setAttribute("d", points.length >= LEAST_LINE ? (line(points) ?? "") : points.map(cross).join(""));
     }
   };
 }
@@ -60,6 +53,9 @@ function cut(
   plot.append(frame, layer);
   return layer;
 }
+
+/** @returns {[number, number]} */
+const pointAt = (/** @type {number} */ x, /** @type {number} */ y) => [x, y];
 
 /** The same bends between points as the model's lines have. */
 const line = (/** @type {[number, number][]} */ points) => d3.line().curve(d3.curveMonotoneX).digits(1)(points);

@@ -11,21 +11,21 @@ import { d3, Plot, STYLE } from "./library.js";
 
 /** The regions of highest density as paths in pixels; the density is given at the points of a grid. */
 function regions(
-  /** @type {any} */ pair,
+  /** @type {JointPosterior} */ pair,
   /** @type {(v: number) => number} */ x,
   /** @type {(v: number) => number} */ y,
   isTurned = false,
 ) {
   const [xs, ys] = pair.grid;
   const geometry = d3.contours().size([xs.length, ys.length]);
-  const at = (/** @type {number[]} */ of, /** @type {number} */ k) =>
-    of[0] + ((k - 0.5) * (of[of.length - 1] - of[0])) / (of.length - 1);
+  const at = (/** @type {number[]} */ axis, /** @type {number} */ k) =>
+    axis[0] + ((k - 0.5) * (axis[axis.length - 1] - axis[0])) / (axis.length - 1);
   const values = pair.density.flat();
   const corner = (/** @type {number[]} */ [i, j]) => {
     const [h, v] = isTurned ? [x(at(ys, j)), y(at(xs, i))] : [x(at(xs, i)), y(at(ys, j))];
     return `${h.toFixed(1)},${v.toFixed(1)}`;
   };
-  return pair.contours.map((/** @type {{ density: number }} */ { density }) =>
+  return pair.contours.map(({ density }) =>
     geometry
       .contour(values, density)
       .coordinates.flat()
@@ -44,10 +44,16 @@ const UNDER = 44;
 const CHARACTER = 5.4;
 
 /**
+ * @typedef {Pick<Marginal, "name" | "unit" | "bounds" | "q05" | "q95" | "mean" | "sd">} ScaledMarginal
+ * @typedef {d3.Selection<SVGGElement, undefined, null, undefined>} Group
+ * @typedef {d3.Selection<SVGTextElement, undefined, null, undefined>} Label
+ */
+
+/**
  * The scale of a parameter in the unit that is shown: 3.5 sds about the mean and the 90 % interval, within the bounds
  * of its prior.
  */
-export function scaleOf(/** @type {any} */ m, /** @type {[number, number]} */ range) {
+export function scaleOf(/** @type {ScaledMarginal} */ m, /** @type {[number, number]} */ range) {
   const { isLogarithm, of } = shownParameter(m);
   const low = Math.max(m.bounds[0] ?? -Infinity, Math.min(m.q05, m.mean - 3.5 * m.sd));
   const high = Math.min(m.bounds[1] ?? Infinity, Math.max(m.q95, m.mean + 3.5 * m.sd));
@@ -73,22 +79,34 @@ export function ticksOf(axis, extent) {
     });
 }
 
-/** @param {{ pairs: any[], marginals: any[], name: string, onCell: (pair: any) => void }} properties */
+/**
+ * @param {{ pairs: JointPosterior[], marginals: Marginal[], name: string, onCell: (pair: JointPosterior) => void }}
+ *   properties
+ */
 export function PairPlot({ pairs, marginals, name, onCell }) {
   const count = marginals.length;
-  const pairOf = (/** @type {any} */ a, /** @type {any} */ b) =>
-    pairs.find((p) => [a.name, b.name].every((n) => p.parameters.some((/** @type {any} */ q) => q.name === n)));
+  const pairOf = (/** @type {Marginal} */ a, /** @type {Marginal} */ b) =>
+    pairs.find((p) => [a.name, b.name].every((n) => p.parameters.some((q) => q.name === n)));
   const draw = (/** @type {number} */ width) => {
     const side = Math.round(Math.max(SIDES[0], Math.min(SIDES[1], (width - EDGE) / count - GAP)));
     const whole = EDGE + count * (side + GAP);
-    const ticks = (/** @type {any} */ g, /** @type {any} */ axis, /** @type {number[]} */ values) =>
+    const ticks = (
+      /** @type {Group} */ g,
+      /** @type {d3.Axis<d3.NumberValue>} */ axis,
+      /** @type {number[]} */ values,
+    ) =>
       g
-        .call(axis.tickValues(values).tickFormat(tickWords).tickSize(3))
+        .call(
+          axis
+            .tickValues(values)
+            .tickFormat((v) => tickWords(Number(v)))
+            .tickSize(3),
+        )
         .attr("font-size", 9)
         .attr("font-family", "inherit")
         .select(".domain")
         .remove();
-    const label = (/** @type {any} */ text, /** @type {any} */ m) => {
+    const label = (/** @type {Label} */ text, /** @type {Marginal} */ m) => {
       text.attr("text-anchor", "middle").attr("font-size", 10).attr("fill", "currentColor");
       [short(shownParameter(m).name), titled("", shownParameter(m).unit).trim()].forEach((line, k) =>
         text
@@ -117,10 +135,9 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
         const x = (/** @type {number} */ v) => across(shownParameter(column).of(v));
         if (i === j) {
           const top = d3.max(column.posterior) ?? 1;
-          const line = d3.line(
-            (/** @type {any} */ _, k) => x(column.grid[k]),
-            (/** @type {any} */ v) => side - (0.92 * side * v) / Number(top),
-          );
+          /** @type {d3.Line<number>} */
+          const shape = d3.line();
+          const line = shape.x((_, k) => x(column.grid[k])).y((v) => side - (0.92 * side * v) / top);
           inside
             .append("path")
             .attr("d", line(column.prior))
@@ -137,7 +154,7 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
           const pair = pairOf(column, row);
           if (!pair) return;
           const y = (/** @type {number} */ v) => up(shownParameter(row).of(v));
-          regions(pair, x, y, pair.parameters[0].name !== column.name).forEach((/** @type {string} */ d) =>
+          regions(pair, x, y, pair.parameters[0].name !== column.name).forEach((d) =>
             inside
               .append("path")
               .attr("d", d)
@@ -192,9 +209,10 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
           );
       }),
     );
-    return /** @type {any} */ (svg.node());
+    return /** @type {SVGSVGElement} */ (svg.node());
   };
-  const open = (/** @type {any} */ event) => event.target.value !== "" && onCell(pairs[Number(event.target.value)]);
+  const open = (/** @type {SelectEvent} */ { currentTarget: { value } }) =>
+    value !== "" && onCell(pairs[Number(value)]);
   return html`
     <p>
       <label>
@@ -205,7 +223,7 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
             (p, k) =>
               html`
                 <option value=${k}>
-                  ${p.parameters.map((/** @type {any} */ q) => shownParameter(q).name).join(t` and `)}, rank
+                  ${p.parameters.map((q) => shownParameter(q).name).join(t` and `)}, rank
                   correlation ${digits(p.rank_correlation, 2)}
                 </option>
               `,
@@ -219,16 +237,17 @@ export function PairPlot({ pairs, marginals, name, onCell }) {
       note="above the diagonal: rank correlations"
       deps=${[marginals.map((m) => m.name).join()]}
       draw=${draw}
-      rows=${() =>
-        densities(
-          pairs.filter((p) => p.parameters.every((/** @type {any} */ q) => marginals.some((m) => m.name === q.name))),
-        )}
+      rows=${() => densities(pairs.filter((p) => p.parameters.every((q) => marginals.some((m) => m.name === q.name))))}
     />
   `;
 }
 
 /** The rank correlation of two parameters, the stronger the darker. */
-function correlation(/** @type {any} */ cell, /** @type {any} */ { rank_correlation: r }, /** @type {number} */ side) {
+function correlation(
+  /** @type {Group} */ cell,
+  /** @type {JointPosterior} */ { rank_correlation: r },
+  /** @type {number} */ side,
+) {
   cell
     .append("rect")
     .attr("width", side)
@@ -250,10 +269,10 @@ function correlation(/** @type {any} */ cell, /** @type {any} */ { rank_correlat
 const short = (/** @type {string} */ name) => (name.length > 20 ? `${name.slice(0, 10)}…${name.slice(-9)}` : name);
 
 /** The joint densities as rows: one for each point of each grid. */
-function densities(/** @type {any[]} */ pairs) {
+function densities(/** @type {JointPosterior[]} */ pairs) {
   return pairs.flatMap((pair) =>
-    pair.grid[0].flatMap((/** @type {number} */ x, /** @type {number} */ i) =>
-      pair.grid[1].map((/** @type {number} */ y, /** @type {number} */ j) => ({
+    pair.grid[0].flatMap((x, i) =>
+      pair.grid[1].map((y, j) => ({
         x_parameter: pair.parameters[0].name,
         y_parameter: pair.parameters[1].name,
         x,
@@ -264,35 +283,38 @@ function densities(/** @type {any[]} */ pairs) {
   );
 }
 
+/** @typedef {JointPosterior["marks"][number]} JointMark */
+
 /** What the picture has for a mark: a line where it fixes one parameter, else its symbol. */
-function entryGlyph(/** @type {any} */ mark, /** @type {number} */ k) {
+function entryGlyph(/** @type {JointMark} */ mark, /** @type {number} */ k) {
   const colour = `var(--series-${(k % 7) + 1})`;
-  if (mark.at.y === null) return html`<path d="M8,1V15" stroke=${colour} stroke-width="1.5" />`;
-  if (mark.at.x === null) return html`<path d="M1,8H15" stroke=${colour} stroke-width="1.5" />`;
+  if (typeof mark.at.y !== "number") return html`<path d="M8,1V15" stroke=${colour} stroke-width="1.5" />`;
+  if (typeof mark.at.x !== "number") return html`<path d="M1,8H15" stroke=${colour} stroke-width="1.5" />`;
   return html`<g fill=${colour} color=${colour}>${glyph(k + 1)}</g>`;
 }
 
-/** @param {{ pair: any }} properties */
+/** @param {{ pair: JointPosterior }} properties */
 export function JointPicture({ pair }) {
-  const [a, b] = pair.parameters.map((/** @type {any} */ p) => ({ id: p.name, ...shownParameter(p) }));
+  const [a, b] = pair.parameters.map((p) => ({ id: p.name, ...shownParameter(p) }));
   const axis = (
     /** @type {import("../words/parameter.js").ShownParameter} */ { name, unit, isLogarithm, of },
     /** @type {number} */ k,
   ) => ({
     label: titled(name, unit),
     labelArrow: /** @type {const} */ ("none"),
-    domain: [of(pair.grid[k][0]), of(pair.grid[k].at(-1))],
+    domain: [of(pair.grid[k][0]), of(pair.grid[k][pair.grid[k].length - 1])],
     tickFormat: tickWords,
     ...(isLogarithm ? { type: /** @type {const} */ ("log"), ticks: 4 } : {}),
   });
-  const mark = (/** @type {any} */ m, /** @type {number} */ k) => {
+  const mark = (/** @type {JointMark} */ m, /** @type {number} */ k) => {
     const stroke = `var(--series-${(k % 7) + 1})`;
-    if (m.at.y === null) return Plot.ruleX([a.of(m.at.x)], { stroke });
-    if (m.at.x === null) return Plot.ruleY([b.of(m.at.y)], { stroke });
+    const { x, y } = m.at;
+    if (typeof x !== "number") return typeof y === "number" ? Plot.ruleY([b.of(y)], { stroke }) : null;
+    if (typeof y !== "number") return Plot.ruleX([a.of(x)], { stroke });
     return Plot.dot([m], {
-      x: () => a.of(m.at.x),
-      y: () => b.of(m.at.y),
-      symbol: /** @type {any} */ (symbol(k + 1)),
+      x: () => a.of(x),
+      y: () => b.of(y),
+      symbol: symbol(k + 1),
       stroke,
       fill: stroke,
       r: 5,
@@ -302,14 +324,12 @@ export function JointPicture({ pair }) {
   return html`
     <${Figure}
       title=${title}
-      note=${t`regions of ${pair.contours.map((/** @type {any} */ c) => Math.round(100 * c.share)).join(", ")} % of the
+      note=${t`regions of ${pair.contours.map((c) => Math.round(100 * c.share)).join(", ")} % of the
         posterior; rank correlation ${digits(pair.rank_correlation, 2)}`}
       name=${fileName("joint", a.id, b.id)}
       deps=${[pair]}
       rows=${() => densities([pair])}
-      legend=${pair.marks.map(
-        (/** @type {any} */ m, /** @type {number} */ k) => html`<${Entry} glyph=${entryGlyph(m, k)}>${m.label}<//>`,
-      )}
+      legend=${pair.marks.map((m, k) => html`<${Entry} glyph=${entryGlyph(m, k)}>${m.label}<//>`)}
       draw=${(/** @type {number} */ width) =>
         Plot.plot({
           width: Math.min(width, 620),
@@ -321,16 +341,16 @@ export function JointPicture({ pair }) {
           x: { ticks: 6, ...axis(a, 0), labelAnchor: "center" },
           y: axis(b, 1),
           marks: [
-            (/** @type {any} */ _, /** @type {any} */ scales) =>
-              /** @type {any} */ (
+            (_, scales) =>
+              /** @type {SVGGElement} */ (
                 d3
                   .create("svg:g")
                   .call((g) =>
                     regions(
                       pair,
-                      (v) => scales.x(a.of(v)),
-                      (v) => scales.y(b.of(v)),
-                    ).forEach((/** @type {string} */ d) =>
+                      (v) => Number(scales.x?.(a.of(v))),
+                      (v) => Number(scales.y?.(b.of(v))),
+                    ).forEach((d) =>
                       g
                         .append("path")
                         .attr("d", d)
@@ -341,7 +361,7 @@ export function JointPicture({ pair }) {
                   )
                   .node()
               ),
-            ...pair.lines.map((/** @type {any} */ l) =>
+            ...pair.lines.map((l) =>
               Plot.line(l.points, {
                 x: (p) => a.of(p[0]),
                 y: (p) => b.of(p[1]),

@@ -9,24 +9,29 @@ const EQUAL = 0.012;
 
 /**
  * The rows of each place, from left to right.
- * @param {any[]} rows
- * @param {(row: any) => number} x
- * @returns {any[][]}
+ * @template Row
+ * @param {Row[]} rows
+ * @param {(row: Row) => number} x
+ * @returns {Row[][]}
  */
 export function places(rows, x) {
   const ascending = rows.toSorted((a, b) => x(a) - x(b));
   if (ascending.length === 0) return [];
   const span = x(ascending[ascending.length - 1]) - x(ascending[0]);
-  /** @type {any[][]} */
-  const found = [];
+  /** @type {Row[][]} */
+  const all = [];
   for (const row of ascending) {
-    const last = found.at(-1);
+    const last = all.at(-1);
     if (last && x(row) - x(last[0]) <= EQUAL * span) last.push(row);
-    else found.push([row]);
+    else all.push([row]);
   }
-  return found;
+  return all;
 }
 
-/** The mean of a quantity over rows. */
-export const meanOf = (/** @type {any[]} */ rows, /** @type {(row: any) => number} */ of) =>
-  rows.reduce((sum, row) => sum + of(row), 0) / rows.length;
+/**
+ * The mean of a quantity over rows.
+ * @template Row
+ * @param {Row[]} rows
+ * @param {(row: Row) => number} valueOf
+ */
+export const meanOf = (rows, valueOf) => rows.reduce((sum, row) => sum + valueOf(row), 0) / rows.length;

@@ -9,15 +9,17 @@ import { intervalName, quantityName } from "../words/predicted_quantity.js";
 import { Entry, Figure, fileName } from "./figure.js";
 import { Plot, STYLE } from "./library.js";
 
+/** @typedef {import("../prediction_table.js").Spread & { slip: number }} SpreadAtSlip */
+
 /**
- * @param {{ quantity: { name: string, unit: string }, points: (import("../prediction_table.js").Spread & { slip: number
- *   })[], here: (import("../prediction_table.js").Spread & { slip: number }) | null, fitted: [number, number],
- *   measured: any[], name: string }} properties fitted: the slips of the fitted runs. measured: rows of a comparison
+ * @param {{ quantity: { name: string, unit: string }, points: SpreadAtSlip[], here: SpreadAtSlip | null, fitted:
+ *   [number, number], measured: MeasuredRow[], name: string }} properties fitted: the slips of the fitted runs.
+ *   measured: rows of a comparison
  */
 export function PredictionChart({ quantity, points, here, fitted, measured, name }) {
   const { unit, scale } = shown(quantity.unit);
-  const x = (/** @type {any} */ row) => row.slip * slipUnit.scale;
-  const y = (/** @type {"mean" | "low" | "high"} */ key) => (/** @type {any} */ row) => row[key] * scale;
+  const x = (/** @type {{ slip: number }} */ row) => row.slip * slipUnit.scale;
+  const y = (/** @type {"mean" | "low" | "high"} */ key) => (/** @type {SpreadAtSlip} */ row) => row[key] * scale;
   const title = t`Predicted ${quantityName(quantity.name)} by slip`;
   const beyond = [
     [points[0]?.slip, fitted[0]],
@@ -38,8 +40,8 @@ export function PredictionChart({ quantity, points, here, fitted, measured, name
       y: { label: titled(quantityName(quantity.name), unit), labelArrow: "none", nice: true },
       marks: [
         Plot.rectX(beyond, {
-          x1: (/** @type {any} */ d) => d[0] * slipUnit.scale,
-          x2: (/** @type {any} */ d) => d[1] * slipUnit.scale,
+          x1: (/** @type {[number, number]} */ d) => d[0] * slipUnit.scale,
+          x2: (/** @type {[number, number]} */ d) => d[1] * slipUnit.scale,
           fill: "var(--rule)",
           fillOpacity: 0.35,
         }),
@@ -47,9 +49,9 @@ export function PredictionChart({ quantity, points, here, fitted, measured, name
         Plot.lineY(points, { ...curve, y: y("mean"), stroke: "var(--series-0)", strokeWidth: 2 }),
         Plot.dot(measured, {
           x,
-          y: (/** @type {any} */ row) => row.measured * scale,
+          y: (/** @type {MeasuredRow} */ row) => row.measured * scale,
           r: 4.2,
-          fill: (/** @type {any} */ row) => (row.use === "holdout" ? "var(--paper)" : "var(--measured)"),
+          fill: (/** @type {MeasuredRow} */ row) => (row.use === "holdout" ? "var(--paper)" : "var(--measured)"),
           stroke: "var(--measured)",
         }),
         ...(here

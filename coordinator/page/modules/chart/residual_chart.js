@@ -12,25 +12,27 @@ import { MANY } from "./merged.js";
 import { byRun, pointable } from "./runs.js";
 
 /** The trends of the diagnosis by the axis that they run along. */
-const AGAINST = /** @type {Record<string, string>} */ ({
+const AGAINST = /** @type {const} */ ({
   slip: "slip",
   wheel_load_n: "wheel_load",
   sled_speed_m_s: "sled_speed",
+  slip_angle_deg: null,
   place: "order",
 });
 const LEVEL = 0.01;
 
 /**
- * @param {{ channel: string, rows: any[], axis: any, errors: "all" | "noise", trends: any[], name: string }} properties
+ * @param {{ channel: string, rows: PlacedRow[], axis: ConditionAxis<keyof typeof AGAINST>, errors: "all" | "noise",
+ *   trends: Trend[], name: string }} properties
  */
 export function ResidualChart({ channel, rows, axis, errors, trends, name }) {
   const isMany = rows.length > MANY;
   const judged = rows.filter((r) => r.predicted !== null && r.predicted !== undefined);
   const quantity = shown(rows[0].unit);
-  const x = (/** @type {any} */ r) => r[axis.key] * axis.scale;
-  const y = (/** @type {any} */ r) => (r.measured - r.predicted) * quantity.scale;
+  const x = (/** @type {PlacedRow} */ r) => r[axis.key] * axis.scale;
+  const y = (/** @type {PlacedRow} */ r) => (r.measured - (r.predicted ?? NaN)) * quantity.scale;
   const wheels = [...new Set(rows.map((r) => r.wheel))];
-  const trend = trends.find((one) => one.channel === channel && one.against === AGAINST[axis.key]);
+  const trend = trends.find((test) => test.channel === channel && test.against === AGAINST[axis.key]);
   const isBeyond = trend && trend.p * trends.length < LEVEL;
   const mean = meanErrorSd(judged, errors);
   const sd = mean === null ? null : mean * quantity.scale;
@@ -44,7 +46,7 @@ export function ResidualChart({ channel, rows, axis, errors, trends, name }) {
       )
     : [];
   // The words are made of the run that is pointed at alone.
-  const tip = (/** @type {any} */ r) => `${t`run ${r.run}`}\n${minus(digits(y(r)))} ${quantity.unit}`;
+  const tip = (/** @type {PlacedRow} */ r) => `${t`run ${r.run}`}\n${minus(digits(y(r)))} ${quantity.unit}`;
   const draw = (/** @type {number} */ width) =>
     Plot.plot({
       width,
@@ -86,7 +88,7 @@ export function ResidualChart({ channel, rows, axis, errors, trends, name }) {
           Plot.pointer({
             x,
             y,
-            title: (/** @type {any} */ r) => r,
+            title: (/** @type {PlacedRow} */ r) => r,
             format: { title: tip },
             maxRadius: 12,
             fill: "var(--panel)",
@@ -118,7 +120,7 @@ export function ResidualChart({ channel, rows, axis, errors, trends, name }) {
           [axis.key]: r[axis.key],
           [`residual [${quantity.unit}]`]: y(r),
         }))}
-      onDrawn=${(/** @type {any} */ plot) =>
+      onDrawn=${(/** @type {Picture} */ plot) =>
         pointable(plot, { runsIn, words: (from, to) => spanWords(axis, from, to) })}
       legend=${html`
         ${
@@ -142,10 +144,10 @@ export function ResidualChart({ channel, rows, axis, errors, trends, name }) {
 
 /** The trend as it is left in the residuals: a straight line through their middle. */
 function trendLine(
-  /** @type {any[]} */ rows,
-  /** @type {any} */ trend,
-  /** @type {(r: any) => number} */ x,
-  /** @type {(r: any) => number} */ y,
+  /** @type {PlacedRow[]} */ rows,
+  /** @type {Trend} */ trend,
+  /** @type {(r: PlacedRow) => number} */ x,
+  /** @type {(r: PlacedRow) => number} */ y,
   /** @type {number} */ scale,
 ) {
   const places = rows.map(x);

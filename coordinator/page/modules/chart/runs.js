@@ -7,35 +7,34 @@ import { marksLike, merge, mergedRunAt } from "./merged.js";
 /** A shorter way of the pointer is a click [px]. */
 const LEAST_PX = 5;
 
+/** @typedef {SVGElement & { __data__: number }} Bound an element of a mark, with the place of its datum */
+
 /**
  * Options of a mark whose elements carry the run of their datum.
- * @template {{ run: string }} D
- * @param {D[]} data
- * @param {any} options
+ * @template {{ run: string }} Datum
+ * @template {object} Options
+ * @param {Datum[]} data
+ * @param {Options} options
  * @param {boolean} [isMany] whether the picture has so many marks that those of a colour are one element
+ * @returns {Options & { render: import("@observablehq/plot").RenderFunction }}
  */
 export function byRun(data, options, isMany = false) {
   return {
     ...options,
-    render(
-      /** @type {any} */ index,
-      /** @type {any} */ scales,
-      /** @type {any} */ values,
-      /** @type {any} */ dimensions,
-      /** @type {any} */ context,
-      /** @type {any} */ next,
-    ) {
-      if (isMany && index.length > 0) {
-        // One element is the pattern of all: those of a mark differ by place and colour alone.
-        const merged = next(index.slice(0, 1), scales, values, dimensions, context);
+    render(index, scales, values, dimensions, context, next) {
+      // One element is the pattern of all: those of a mark differ by place and colour alone.
+      const isMerged = isMany && index.length > 0;
+      const drawn = isMerged ? index.slice(0, 1) : index;
+      const group = next?.(drawn, scales, values, dimensions, context) ?? null;
+      const first = group?.firstElementChild;
+      if (isMerged && group && first) {
         merge(
-          merged,
-          marksLike(merged.firstElementChild, index, values, (place) => data[place].run),
+          group,
+          marksLike(first, index, values, (place) => data[place].run),
         );
-        return merged;
+        return group;
       }
-      const group = next(index, scales, values, dimensions, context);
-      for (const element of group?.children ?? []) {
+      for (const element of /** @type {Iterable<Bound>} */ (group?.children ?? [])) {
         const datum = data[element.__data__];
         if (datum) element.dataset.run = datum.run;
       }
@@ -44,20 +43,25 @@ export function byRun(data, options, isMany = false) {
   };
 }
 
+/**
+ * @typedef {"pointerover" | "pointermove" | "pointerleave" | "pointerdown" | "pointerup" | "pointercancel" | "click"}
+ *   PointerEventName
+ */
+
 /** The run of the mark under the pointer. */
 const runAt = (/** @type {SVGSVGElement} */ plot, /** @type {MouseEvent} */ event) =>
   /** @type {SVGElement} */ (event.target).dataset?.run ?? mergedRunAt(plot, event);
 
 /**
  * Lets a picture be pointed at: a mark lights its run, a click chooses it, a drag along x chooses all runs of a region.
- * @param {SVGSVGElement & { scale: (name: string) => any }} plot
+ * @param {Picture} plot
  * @param {{ runsIn?: (from: number, to: number) => string[], words?: (from: number, to: number) => string }} [region]
  * @returns {() => void} removes the listeners
  */
 export function pointable(plot, { runsIn, words } = {}) {
   const abort = new AbortController();
   // Ahead of the pointer of a tip, which keeps what it hears to itself.
-  const on = (/** @type {string} */ type, /** @type {(event: any) => void} */ listener) =>
+  const on = (/** @type {PointerEventName} */ type, /** @type {(event: PointerEvent) => void} */ listener) =>
     plot.addEventListener(type, listener, { signal: abort.signal, capture: true });
   /** @type {string | undefined} */
   let under;
@@ -83,8 +87,8 @@ export function pointable(plot, { runsIn, words } = {}) {
 }
 
 /**
- * @param {SVGSVGElement & { scale: (name: string) => any }} plot
- * @param {(type: string, listener: (event: any) => void) => void} on
+ * @param {Picture} plot
+ * @param {(type: PointerEventName, listener: (event: PointerEvent) => void) => void} on
  * @param {(from: number, to: number) => string[]} runsIn
  * @param {(from: number, to: number) => string} words
  */
@@ -94,7 +98,7 @@ function drag(plot, on, runsIn, words) {
   const [top, bottom] = plot
     .scale("y")
     .range.slice()
-    .sort((/** @type {number} */ a, /** @type {number} */ b) => a - b);
+    .sort((a, b) => a - b);
   /** @type {{ from: number, band: SVGRectElement | null } | null} */
   let begun = null;
   const at = (/** @type {PointerEvent} */ event) => {

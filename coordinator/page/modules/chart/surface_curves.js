@@ -16,7 +16,7 @@ export class SurfaceCurves {
   }
 
   /** The ends between which the value of a row moves; none without a surface. */
-  rangeOf(/** @type {any} */ row) {
+  rangeOf(/** @type {MeasuredRow} */ row) {
     return this.ranges.get(key(row)) ?? [];
   }
 

@@ -1,13 +1,13 @@
 // What openapi.json says, as this page shows it: operations by tag, schemas in words.
 
 /**
- * @typedef {{ method: string, path: string, id: string, summary: string, description: string, parameters: any[], body:
- *   any, responses: [string, any][] }} Operation
+ * @typedef {{ method: string, path: string, id: string, summary: string, description: string, parameters:
+ *   JsonParameter[], body: JsonOperation["requestBody"] | null, responses: [string, JsonResponse][] }} Operation
  */
 
 /**
  * The operations of each tag, in the order of the tags.
- * @param {any} document
+ * @param {OpenApi} document
  * @returns {{ name: string, description: string, operations: Operation[] }[]}
  */
 export function groups(document) {
@@ -24,7 +24,7 @@ export function groups(document) {
       responses: Object.entries(says.responses),
     })),
   );
-  return document.tags.map((/** @type {any} */ tag) => ({
+  return document.tags.map((tag) => ({
     ...tag,
     operations: operations.filter((operation) => operation.tag === tag.name),
   }));
@@ -35,26 +35,22 @@ const named = (/** @type {string} */ reference) => reference.slice(reference.las
 
 /**
  * What a schema takes, in words; names of other schemas are parts of their own, so that they can be links.
- * @param {any} schema
+ * @param {JsonSchema | undefined} schema
  * @returns {(string | { name: string })[]}
  */
 export function words(schema) {
   if (!schema) return ["anything"];
   if (schema.$ref) return [{ name: named(schema.$ref) }];
   const several = schema.oneOf ?? schema.anyOf ?? schema.allOf;
-  if (several)
-    return several.flatMap((/** @type {any} */ one, /** @type {number} */ k) => [
-      ...(k ? [" or "] : []),
-      ...words(one),
-    ]);
+  if (several) return several.flatMap((form, k) => [...(k ? [" or "] : []), ...words(form)]);
   if (schema.const !== undefined) return [JSON.stringify(schema.const)];
-  if (schema.enum) return [schema.enum.map((/** @type {unknown} */ value) => JSON.stringify(value)).join(", ")];
+  if (schema.enum) return [schema.enum.map((value) => JSON.stringify(value)).join(", ")];
   const types = [schema.type ?? "anything"].flat();
   return types.flatMap((type, k) => [...(k ? [" or "] : []), ...ofType(type, schema)]);
 }
 
 /** @returns {(string | { name: string })[]} */
-function ofType(/** @type {string} */ type, /** @type {any} */ schema) {
+function ofType(/** @type {string} */ type, /** @type {JsonSchema} */ schema) {
   if (type === "array") return ["list of ", ...words(schema.items)];
   if (type === "object" && schema.additionalProperties) return ["by name: ", ...words(schema.additionalProperties)];
   if (type === "object" && schema.properties) return [`{ ${Object.keys(schema.properties).join(", ")} }`];

@@ -5,10 +5,10 @@ import { Table } from "../part/table.js";
 import { Json, Kind, Words } from "./text.js";
 import { Trial } from "./trial.js";
 
-const kindOf = (/** @type {any} */ parameter) =>
+const kindOf = (/** @type {JsonParameter} */ parameter) =>
   parameter.in === "path" ? "in the path" : `in the query${parameter.required ? "" : ", optional"}`;
 
-/** @param {{ parameters: any[], label: string }} properties */
+/** @param {{ parameters: JsonParameter[], label: string }} properties */
 const Parameters = ({ parameters, label }) => html`
   <h4>Parameters</h4>
   <${Table}
@@ -23,17 +23,17 @@ const Parameters = ({ parameters, label }) => html`
   />
 `;
 
-/** @param {{ body: any }} properties */
+/** @param {{ body: NonNullable<JsonOperation["requestBody"]> }} properties */
 const Body = ({ body }) =>
   Object.entries(body.content).map(
     ([type, content]) => html`
       <h4>Body</h4>
-      <p><code>${type}</code>: <${Kind} of=${content.schema} /></p>
+      <p><code>${type}</code>: <${Kind} of=${content?.schema} /></p>
       ${
-        content.example &&
+        content?.example &&
         html`
           <pre tabindex="0" aria-label="an example of the body">
-            <${Json} text=${JSON.stringify(content.example, null, 2)} />
+            <${Json} text=${JSON.stringify(content?.example, null, 2)} />
           </pre>
         `
       }
@@ -41,12 +41,12 @@ const Body = ({ body }) =>
   );
 
 /** What an answer holds. */
-const held = (/** @type {any} */ response) =>
+const held = (/** @type {JsonResponse} */ response) =>
   Object.entries(response.content ?? {}).map(
-    ([type, { schema }], k) => html`
+    ([type, content], k) => html`
       ${k ? ", " : ""}
       ${type === "application/json" ? "" : html`<code>${type}</code> `}
-      <${Kind} of=${schema} />
+      <${Kind} of=${content?.schema} />
     `,
   );
 
@@ -55,7 +55,12 @@ export function OperationCard({ operation, isOpen }) {
   const [isShown, setShown] = useState(isOpen);
   const { id, method, path } = operation;
   return html`
-    <details class="operation" id=${id} open=${isOpen} onToggle=${(/** @type {any} */ e) => setShown(e.target.open)}>
+    <details
+      class="operation"
+      id=${id}
+      open=${isOpen}
+      onToggle=${(/** @type {DetailsEvent} */ e) => setShown(e.currentTarget.open)}
+    >
       <summary>
         <span class="method ${method.toLowerCase()}">${method}</span> <code class="path">${path}</code>
         <span class="what">${operation.summary.replace(/\.$/, "")}</span>

@@ -13,7 +13,7 @@ import { Words } from "./text.js";
 
 const title = (/** @type {string} */ name) => name[0].toUpperCase() + name.slice(1);
 
-/** @param {{ document: any, place: string[] }} properties */
+/** @param {{ document: OpenApi, place: string[] }} properties */
 function Description({ document: description, place }) {
   const target = place.join("/");
   useEffect(() => {

@@ -5,8 +5,8 @@ import { Table } from "../part/table.js";
 import { Kind, Words } from "./text.js";
 
 /** The keys of an object, with what they hold. */
-const keys = (/** @type {any} */ schema) =>
-  Object.entries(schema.properties).map(([name, of]) => [
+const keys = (/** @type {JsonSchema} */ schema) =>
+  Object.entries(schema.properties ?? {}).map(([name, held]) => [
     html`
       <code>${name}</code>
       ${
@@ -18,18 +18,18 @@ const keys = (/** @type {any} */ schema) =>
             `
       }
     `,
-    html`<${Kind} of=${of} />`,
-    html`<${Words}>${of.description ?? ""}<//>`,
+    html`<${Kind} of=${held} />`,
+    html`<${Words}>${held.description ?? ""}<//>`,
   ]);
 
-/** @param {{ name: string, schema: any }} properties */
+/** @param {{ name: string, schema: JsonSchema }} properties */
 const Keys = ({ name, schema }) =>
   html`<${Table} label=${`keys of ${name}`} head=${["key", "holds", "meaning"]} rows=${keys(schema)} />`;
 
-/** The forms that a message may have. @param {{ name: string, schema: any }} properties */
+/** The forms that a message may have. @param {{ name: string, schema: JsonSchema }} properties */
 const Forms = ({ name, schema }) =>
   (schema.oneOf ?? [schema]).map(
-    (/** @type {any} */ form, /** @type {number} */ k) => html`
+    (form, k) => html`
       ${form !== schema && form.description && html`<p><${Words}>${form.description}<//></p>`}
       ${
         form.properties
@@ -39,7 +39,7 @@ const Forms = ({ name, schema }) =>
     `,
   );
 
-/** @param {{ schemas: Record<string, any>, open: string | null }} properties */
+/** @param {{ schemas: Record<string, JsonSchema>, open: string | null }} properties */
 export const Schemas = ({ schemas, open }) =>
   Object.entries(schemas).map(
     ([name, schema]) => html`

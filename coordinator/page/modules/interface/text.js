@@ -3,7 +3,7 @@
 import { html } from "../html.js";
 import { words } from "./document.js";
 
-/** @param {{ children?: any }} properties */
+/** @param {{ children?: unknown }} properties */
 export const Words = ({ children }) =>
   [children]
     .flat()
@@ -11,7 +11,7 @@ export const Words = ({ children }) =>
     .split("`")
     .map((part, k) => (k % 2 ? html`<code>${part}</code>` : part));
 
-/** @param {{ of: any }} properties */
+/** @param {{ of?: JsonSchema }} properties */
 export const Kind = ({ of }) =>
   words(of).map((part) =>
     typeof part === "string" ? part : html`<a href=${`#/schemas/${part.name}`}>${part.name}</a>`,

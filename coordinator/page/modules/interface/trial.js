@@ -2,7 +2,7 @@
 
 import { html, useState } from "../html.js";
 import { Failure } from "../part/message.js";
-import { request } from "../rest/answers.js";
+import { errorOf, request } from "../rest/answers.js";
 import { token } from "../rest/token.js";
 import { curl, filled } from "./document.js";
 import { Json } from "./text.js";
@@ -19,10 +19,18 @@ function readable(/** @type {string} */ text) {
   }
 }
 
+/** @typedef {{ status: number, text: string, ms: number }} Read */
+
 /** @param {{ operation: import("./document.js").Operation }} properties */
 export function Trial({ operation }) {
   const [values, setValues] = useState(/** @type {Record<string, string>} */ ({}));
-  const [state, setState] = useState(/** @type {any} */ ({ answer: null, error: null, isAsking: false }));
+  const [state, setState] = useState(
+    /** @type {{ answer: Read | null, error: Error | null, isAsking: boolean }} */ ({
+      answer: null,
+      error: null,
+      isAsking: false,
+    }),
+  );
   const path = filled(operation, values);
   const isStream = operation.responses.some(([, response]) => response.content?.["text/event-stream"]);
   const ask = async (/** @type {Event} */ event) => {
@@ -38,7 +46,7 @@ export function Trial({ operation }) {
         isAsking: false,
       });
     } catch (error) {
-      setState({ answer: null, error, isAsking: false });
+      setState({ answer: null, error: errorOf(error), isAsking: false });
     }
   };
   return html`
@@ -52,7 +60,7 @@ export function Trial({ operation }) {
               <input
                 required=${place === "path"}
                 value=${values[name] ?? ""}
-                onInput=${(/** @type {any} */ e) => setValues({ ...values, [name]: e.target.value })}
+                onInput=${(/** @type {FieldEvent} */ e) => setValues({ ...values, [name]: e.currentTarget.value })}
               />
             </label>
           `,

@@ -9,3 +9,5 @@ import { WORDS } from "./german_words.js";
 
 /** @type {Record<string, string>} texts by their English form; `{0}` stands for the first part that varies */
 export const GERMAN = { ...WORDS, ...SENTENCES, ...CALCULATOR, ...CAMPAIGN, ...EFFECTS, ...PARAMETERS };
+
+export { PARAMETERS };

@@ -194,7 +194,7 @@ const PHRASES = {
   "\\(grouser_count = 0: a smooth rim\\)": "(grouser_count = 0: glatter Umfang)",
   " under (?=\\[)": " unter ",
   // The diagnosis.
-  "the (\\d+) residuals are ([\\d.]+) times as large as the assumed errors let expect \\(chi-square ([\\d.e+]+) with ([\\d.]+) degrees of freedom, (p [=<] [^)]+)\\)":
+  "the (\\d+) residuals are ([\\d.]+) times as large as expected from the assumed errors \\(chi-square ([\\d.e+]+) with ([\\d.]+) degrees of freedom, (p [=<] [^)]+)\\)":
     "die $1 Abweichungen sind das $2-Fache dessen, was die angenommenen Fehler erwarten lassen (Chi-Quadrat $3 bei $4 Freiheitsgraden, $5)",
   ": slightly more than the assumed errors explain": ": etwas mehr, als die angenommenen Fehler erklären",
   ": more than the assumed errors explain": ": mehr, als die angenommenen Fehler erklären",

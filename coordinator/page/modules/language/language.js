@@ -13,9 +13,10 @@ export const language = chosen.value;
 /** Chooses a language; the page begins anew in it. */
 export const choose = (/** @type {string} */ to) => chosen.change(to);
 
-const german = () => import("./german.js").then((module) => module.GERMAN);
+const loadGerman = () => import("./german.js");
+const german = language === "de" ? await loadGerman() : null;
 /** @type {Record<string, string> | null} texts by their English form; `{0}` stands for the first part that varies */
-const catalogue = language === "de" ? await german() : null;
+const catalogue = german?.GERMAN ?? null;
 if (globalThis.document) document.documentElement.lang = language;
 
 /** The end of a line within a text, with the indentation of the next. */
@@ -34,7 +35,14 @@ export function t(texts, ...parts) {
 }
 
 /** A text of the service, such as a state or what an effect does, where the catalogue has it. */
-export const translated = (/** @type {string} */ text) => catalogue?.[text] ?? text;
+export const translated = (/** @type {string} */ text) => textIn(catalogue, text);
+
+/** The words of a parameter's name; a name that somebody gave, such as that of a wheel, is none of them. */
+export const translatedParameter = (/** @type {string} */ words) => textIn(german?.PARAMETERS ?? null, words);
+
+/** A text in a language; itself where the texts of the language lack it. */
+const textIn = (/** @type {Record<string, string> | null} */ texts, /** @type {string} */ text) =>
+  texts !== null && Object.hasOwn(texts, text) ? texts[text] : text;
 
 const ofService = () => import("./german_service.js").then((module) => module.germanOf);
 const germanOf = language === "de" ? await ofService() : null;
@@ -63,53 +71,55 @@ const BETWEEN = /(^|>)(\s*)([^<>]+?)(\s*)(?=<|$)/g;
  */
 export function textsOf(statics) {
   /** @type {string[]} */
-  const found = [];
+  const texts = [];
   replaced(statics, (text) => {
-    found.push(text);
+    texts.push(text);
     return text;
   });
-  return found;
+  return texts;
 }
 
 /** The text of a template with its texts replaced; texts without a letter stay. */
 function replaced(/** @type {readonly string[]} */ statics, /** @type {(text: string) => string} */ by) {
   const whole = statics.reduce((all, text, k) => `${all}\0${k - 1}\0${text}`);
-  const one = (/** @type {string} */ text) => {
+  const ofText = (/** @type {string} */ text) => {
     /** @type {string[]} */
     const parts = [];
     const key = text.replace(/\s+/g, " ").replace(MARK, (mark) => `{${parts.push(mark) - 1}}`);
     return /\p{L}/u.test(key.replace(/&\w+;/g, "")) ? by(key).replace(/\{(\d+)\}/g, (_, k) => parts[Number(k)]) : text;
   };
   return whole
-    .replace(BETWEEN, (_, before, space, text, after) => `${before}${space}${one(text)}${after}`)
-    .replace(READ, (_, head, text) => `${head}${one(text)}"`);
+    .replace(BETWEEN, (_, before, space, text, after) => `${before}${space}${ofText(text)}${after}`)
+    .replace(READ, (_, head, text) => `${head}${ofText(text)}"`);
 }
 
 /**
  * A template tag whose templates are in the language of a catalogue.
  * @template T
  * @param {Record<string, string>} texts
- * @param {(statics: any, ...fields: unknown[]) => T} tag
+ * @param {(statics: TemplateStringsArray, ...fields: unknown[]) => T} tag
  * @returns {(statics: TemplateStringsArray, ...fields: unknown[]) => T}
  */
 export function inTemplates(texts, tag) {
-  /** @type {WeakMap<readonly string[], { statics: string[], order: number[] }>} */
+  /** @type {WeakMap<readonly string[], { statics: TemplateStringsArray, order: number[] }>} */
   const known = new WeakMap();
   return (statics, ...fields) => {
-    let own = known.get(statics);
-    if (!own) {
+    let template = known.get(statics);
+    if (!template) {
       const pieces = replaced(statics, (text) => texts[text] ?? text).split(MARK);
-      own = { statics: pieces.filter((_, k) => k % 2 === 0), order: pieces.filter((_, k) => k % 2 === 1).map(Number) };
-      known.set(statics, own);
+      const kept = pieces.filter((_, k) => k % 2 === 0);
+      const order = pieces.filter((_, k) => k % 2 === 1).map(Number);
+      template = { statics: Object.assign(kept, { raw: kept }), order };
+      known.set(statics, template);
     }
-    return tag(own.statics, ...own.order.map((k) => fields[k]));
+    return tag(template.statics, ...template.order.map((k) => fields[k]));
   };
 }
 
 /**
  * A template tag whose templates are in the language of the page.
  * @template T
- * @param {(statics: any, ...fields: unknown[]) => T} tag
+ * @param {(statics: TemplateStringsArray, ...fields: unknown[]) => T} tag
  * @returns {(statics: TemplateStringsArray, ...fields: unknown[]) => T}
  */
 export const inLanguage = (tag) => (catalogue === null ? tag : inTemplates(catalogue, tag));

@@ -22,31 +22,26 @@ const PLACES = /** @type {Record<string, ((level: string) => string) | undefined
   slip_angle_deg: (angle) => t`at a slip angle of ${angle}`,
 });
 
-/** @param {{ study: any, model: any, channel: string }} properties */
+/** @param {{ study: Study, model: Member, channel: string }} properties */
 export function BeforeAfter({ study, model, channel }) {
   const before = lineBefore(study.ledger, model.id)?.calibration ?? null;
   const ids = before === null ? [model.id] : [before, model.id];
   const answers = useAnswers(ids.map((id) => path.comparison(id)));
   const colours = new Map(ledgerLines(study).map((line) => [line.id, line.colour]));
-  const layers = ids.map((id) => ({
-    id,
-    colour: ids.length === 1 ? null : (colours.get(id) ?? "var(--series-0)"),
-    rows: answers[path.comparison(id)]?.rows ?? null,
-  }));
-  if (layers.some((layer) => layer.rows === null))
-    return html`<p class="empty" aria-busy="true">Loading the picture …</p>`;
-  const ofChannel = (/** @type {any[]} */ rows) => rows.filter((row) => row.channel === channel);
+  const layers = ids.flatMap((id) => {
+    const rows = answers[path.comparison(id)]?.rows;
+    const colour = ids.length === 1 ? null : (colours.get(id) ?? "var(--series-0)");
+    return rows ? [{ id, colour, rows }] : [];
+  });
+  if (layers.length < ids.length) return html`<p class="empty" aria-busy="true">Loading the picture …</p>`;
+  const ofChannel = (/** @type {MeasuredRow[]} */ rows) => rows.filter((row) => row.channel === channel);
   const now = ofChannel(layers.at(-1)?.rows ?? []);
   if (now.length === 0) return null;
   const { wheel, at, runs } = clearest(now, before === null ? now : ofChannel(layers[0].rows));
-  const named = layers.map(({ id, colour, rows }) => ({
-    name: modelName(
-      study,
-      study.members.find((/** @type {any} */ m) => m.id === id),
-    ),
-    colour,
-    rows: rows.filter((/** @type {any} */ r) => runs.has(r.run)),
-  }));
+  const named = layers.flatMap(({ id, colour, rows }) => {
+    const member = study.members.find((m) => m.id === id);
+    return member ? [{ name: modelName(study, member), colour, rows: rows.filter((r) => runs.has(r.run)) }] : [];
+  });
   const where = [at, wheel && t`wheel ${wheel}`].filter(Boolean).join(", ");
   return html`
     <${ChannelChart}
@@ -64,12 +59,12 @@ export function BeforeAfter({ study, model, channel }) {
 /**
  * The wheel and the load, or the slip angle where the load has one level, at which the errors of two models differ
  * most, with their runs; without it where too few slips were run at it.
- * @param {any[]} now
- * @param {any[]} before
+ * @param {MeasuredRow[]} now
+ * @param {MeasuredRow[]} before
  */
 export function clearest(now, before) {
   const old = new Map(before.map((row) => [row.run, row]));
-  const square = (/** @type {any} */ row) =>
+  const square = (/** @type {MeasuredRow | undefined} */ row) =>
     row?.predicted === null || row?.predicted === undefined ? 0 : (row.measured - row.predicted) ** 2;
   const wheels = [...new Set(now.map((row) => row.wheel))];
   const places = wheels.flatMap((wheel) => {

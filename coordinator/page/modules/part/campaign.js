@@ -1,6 +1,7 @@
 // A campaign while it lasts: what the further runs change, as the events of the service tell it, and the form for the
 // next run.
 
+import { errorOf } from "../rest/answers.js";
 import { table } from "../chart/download.js";
 import { d3 } from "../chart/library.js";
 import { html, useEffect, useState } from "../html.js";
@@ -19,8 +20,6 @@ import { Failure } from "./message.js";
 import { NewRuns } from "./new_runs.js";
 import { Table } from "./table.js";
 
-/** @typedef {import("../../types/api").components["schemas"]["Followed"]} Followed */
-
 /** So many contradicting runs speak against the model rather than against a rig. */
 const SEVERAL = 3;
 const METHODS = /** @type {Record<string, string>} */ ({
@@ -29,23 +28,23 @@ const METHODS = /** @type {Record<string, string>} */ ({
   "calibrate again": t`must be calibrated again`,
 });
 
-/** @param {{ study: any, model: any, reload?: () => void }} properties */
+/** @param {{ study: Study, model: Member, reload?: () => void }} properties */
 export function Campaign({ study, model, reload }) {
   const [followed, setFollowed] = useState(/** @type {Followed | null} */ (null));
-  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [failure, setFailure] = useState(/** @type {Error | null} */ (null));
   const { answer: comparison } = useAnswer(path.comparison(model.id));
   useEffect(
     () =>
       follow(path.campaign(model.id), {
-        onEvent: (_, data) => setFollowed(data),
+        onEvent: (/** @type {string} */ _, /** @type {Followed} */ data) => setFollowed(data),
         onError: setFailure,
         isOver: () => false,
       }),
     [model.id],
   );
   // The answer comes as an event, to this page and to all others.
-  const add = async (/** @type {Record<string, unknown>[]} */ rows) => {
-    await followRuns(model.id, joined(followed?.rows ?? "", table(/** @type {any} */ (rows))));
+  const add = async (/** @type {import("../chart/figure.js").Row[]} */ rows) => {
+    await followRuns(model.id, joined(followed?.rows ?? "", table(rows)));
   };
   return html`
     <h2>Follow a campaign</h2>
@@ -202,10 +201,10 @@ function Details(/** @type {{ followed: Followed }} */ { followed }) {
 
 /**
  * Calibrates the study with the further runs.
- * @param {{ study: any, model: any, rows: string, reload?: () => void }} properties
+ * @param {{ study: Study, model: Member, rows: string, reload?: () => void }} properties
  */
 function ForGood({ study, model, rows, reload }) {
-  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [failure, setFailure] = useState(/** @type {Error | null} */ (null));
   const [isBusy, setBusy] = useState(false);
   const send = async () => {
     setFailure(null);
@@ -215,7 +214,7 @@ function ForGood({ study, model, rows, reload }) {
       reload?.();
       location.hash = address(["studies", added.study, "live"]);
     } catch (error) {
-      setFailure(error);
+      setFailure(errorOf(error));
     }
     setBusy(false);
   };

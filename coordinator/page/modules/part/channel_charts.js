@@ -8,7 +8,7 @@ import { CHANNELS } from "../words/quantity.js";
 const MOST_ROWS = 3;
 
 /**
- * @param {{ layers: import("../chart/channel_chart.js").Layer[], axis: import("../chart/condition.js").ConditionAxis,
+ * @param {{ layers: import("../chart/channel_chart.js").Layer[], axis: ConditionAxis,
  *   name: string, moving?: import("../chart/channel_chart.js").Moving, small?: boolean, isLow?: boolean, order?:
  *   readonly string[] }} properties isLow: each as low as it can be read. order: of the channels
  */
@@ -59,7 +59,7 @@ function measurements(/** @type {import("../chart/channel_chart.js").Layer[]} */
 
 /**
  * Chooses the condition that runs are drawn against.
- * @param {{ axes: import("../chart/condition.js").ConditionAxis[], axis: any, choose: (key: string) => void }}
+ * @param {{ axes: ConditionAxis[], axis: ConditionAxis, choose: (key: string) => void }}
  *   properties
  */
 export function AxisPicker({ axes, axis, choose }) {

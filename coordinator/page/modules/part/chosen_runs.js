@@ -2,7 +2,7 @@
 
 import { html, useEffect, useRef, useState } from "../html.js";
 import { t } from "../language/language.js";
-import { isReport } from "../rest/answers.js";
+import { errorOf, isReport } from "../rest/answers.js";
 import { get, path, whatIf } from "../rest/routes.js";
 import { address, parse, replace } from "../route.js";
 import { choose, useChosen } from "../selection.js";
@@ -20,8 +20,8 @@ function named(/** @type {{ runs: Set<string> } | null} */ chosen) {
 }
 
 /**
- * @param {{ study: any, model: any, asked?: string, view?: string }} properties asked: the runs of the address. view:
- *   the one that is shown
+ * @param {{ study: Study, model: Member, asked?: string, view?: string }} properties asked: the runs of the address.
+ *   view: the one that is shown
  */
 export function ChosenRuns({ study, model, asked, view }) {
   const chosen = useChosen();
@@ -38,7 +38,7 @@ export function ChosenRuns({ study, model, asked, view }) {
       choose(names, names.length === 1 ? t`run ${names[0]}` : t`${names.length} runs`);
     } else if ((query.runs ?? null) !== now) replace(address(place, { ...query, runs: now }));
   }, [chosen, asked, view]);
-  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [failure, setFailure] = useState(/** @type {Error | null} */ (null));
   const [isBusy, setBusy] = useState(false);
   if (!chosen) return null;
   const runs = [...chosen.runs];
@@ -47,16 +47,14 @@ export function ChosenRuns({ study, model, asked, view }) {
     setBusy(true);
     try {
       const { rows } = await get(path.comparison(model.id));
-      const fitted = new Set(
-        rows.filter((/** @type {any} */ r) => r.use === "fit").map((/** @type {any} */ r) => r.run),
-      );
+      const fitted = new Set(rows.filter((r) => r.use === "fit").map((r) => r.run));
       const without = runs.filter((run) => fitted.has(run));
       if (without.length === 0) throw new Error(t`these runs are held out already: choose runs that are fitted`);
       const created = await whatIf(model.id, without);
       choose(null);
       location.hash = address(["beside", study.id, created.study]);
     } catch (error) {
-      setFailure(error);
+      setFailure(errorOf(error));
     }
     setBusy(false);
   };

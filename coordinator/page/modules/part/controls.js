@@ -1,5 +1,6 @@
 // Pause, resume and cancel of a calibration.
 
+import { errorOf } from "../rest/answers.js";
 import { html, useState } from "../html.js";
 import { control } from "../rest/routes.js";
 import { Failure } from "./message.js";
@@ -7,7 +8,7 @@ import { Failure } from "./message.js";
 /** @param {{ id: number, state: string, reload: () => void }} properties */
 export function Controls({ id, state, reload }) {
   const [isAsked, setAsked] = useState(false);
-  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [failure, setFailure] = useState(/** @type {Error | null} */ (null));
   const send = async (/** @type {"pause" | "resume" | "cancel"} */ verb) => {
     setFailure(null);
     setAsked(false);
@@ -15,7 +16,7 @@ export function Controls({ id, state, reload }) {
       await control(id, verb);
       reload();
     } catch (error) {
-      setFailure(error);
+      setFailure(errorOf(error));
     }
   };
   return html`

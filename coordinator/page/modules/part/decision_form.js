@@ -1,5 +1,6 @@
 // A decision is asked for with a file, chosen or typed.
 
+import { errorOf } from "../rest/answers.js";
 import { html, useState } from "../html.js";
 import { t } from "../language/language.js";
 import { decide } from "../rest/routes.js";
@@ -17,10 +18,10 @@ name = "stay"
 loss = "60"
 `;
 
-/** @param {{ id: number, isOpen: boolean, onDecided: (answer: any) => void }} properties */
+/** @param {{ id: number, isOpen: boolean, onDecided: (answer: Schemas["DecisionAnswer"]) => void }} properties */
 export function DecisionForm({ id, isOpen, onDecided }) {
   const [text, setText] = useState(EXAMPLE);
-  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [failure, setFailure] = useState(/** @type {Error | null} */ (null));
   const [isBusy, setBusy] = useState(false);
   const send = async (/** @type {Event} */ event) => {
     event.preventDefault();
@@ -29,14 +30,14 @@ export function DecisionForm({ id, isOpen, onDecided }) {
     try {
       onDecided(await decide(id, text));
     } catch (error) {
-      setFailure(error);
+      setFailure(errorOf(error));
     }
     setBusy(false);
   };
-  const chosen = async (/** @type {any} */ event) => {
-    const [file] = event.target.files;
+  const chosen = async (/** @type {FieldEvent} */ { currentTarget: field }) => {
+    const [file] = field.files ?? [];
     if (file) setText(await file.text());
-    event.target.value = "";
+    field.value = "";
   };
   return html`
     <details open=${isOpen}>
@@ -47,7 +48,7 @@ export function DecisionForm({ id, isOpen, onDecided }) {
           aria-label="The decision, TOML"
           spellcheck="false"
           value=${text}
-          onInput=${(/** @type {any} */ e) => setText(e.target.value)}
+          onInput=${(/** @type {FieldEvent<HTMLTextAreaElement>} */ e) => setText(e.currentTarget.value)}
         ></textarea>
         <p class="actions">
           <button class="main" type="submit" disabled=${isBusy}>

@@ -1,18 +1,19 @@
 // A form for what people say of a study: its name, author, tags and a note.
 
+import { errorOf } from "../rest/answers.js";
 import { html, useState } from "../html.js";
 import { describe } from "../rest/routes.js";
 import { tagsOf } from "../words/details.js";
 import { Failure } from "./message.js";
 
-/** @param {{ study: any, reload: () => void, close: () => void }} properties */
+/** @param {{ study: Study, reload: () => void, close: () => void }} properties */
 export function DetailsForm({ study, reload, close }) {
   const { details } = study;
   const [name, setName] = useState(study.name);
   const [author, setAuthor] = useState(details.author ?? "");
   const [tags, setTags] = useState(details.tags.join(", "));
   const [note, setNote] = useState(details.note ?? "");
-  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [failure, setFailure] = useState(/** @type {Error | null} */ (null));
   const save = async (/** @type {Event} */ event) => {
     event.preventDefault();
     const said = (/** @type {string} */ text) => text.trim() || null;
@@ -26,10 +27,13 @@ export function DetailsForm({ study, reload, close }) {
       reload();
       close();
     } catch (error) {
-      setFailure(error);
+      setFailure(errorOf(error));
     }
   };
-  const typed = (/** @type {(text: string) => void} */ set) => (/** @type {any} */ event) => set(event.target.value);
+  const typed =
+    (/** @type {(text: string) => void} */ set) =>
+    (/** @type {FieldEvent<HTMLInputElement | HTMLTextAreaElement>} */ event) =>
+      set(event.currentTarget.value);
   return html`
     <form class="card details" onSubmit=${save}>
       <label>Name of the study <input value=${name} onInput=${typed(setName)} /></label>

@@ -35,9 +35,9 @@ export function DropZone({ onFiles }) {
     setOver(false);
     onFiles(await read(event.dataTransfer?.files ?? []));
   };
-  const chosen = async (/** @type {any} */ event) => {
-    onFiles(await read(event.target.files));
-    event.target.value = "";
+  const chosen = async (/** @type {FieldEvent} */ { currentTarget: field }) => {
+    onFiles(await read(field.files ?? []));
+    field.value = "";
   };
   return html`
     <div

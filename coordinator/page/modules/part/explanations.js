@@ -23,23 +23,20 @@ const OTHERS = /** @type {Record<string, string>} */ ({
 });
 
 /**
- * @param {{ record: any, unchanged: Set<string>, ghost: string | null, kept: string | null, show: (name: string | null)
- *   => void, keep: (name: string | null) => void, add: ((extension: any) => void) | null, study: any, model: any,
- *   isBusy: boolean, reload?: () => void }} properties unchanged: the explanations whose best fit changes no prediction
+ * @param {{ record: Discovery, unchanged: Set<string>, ghost: string | null, kept: string | null, show: (name: string |
+ *   null) => void, keep: (name: string | null) => void, add: ((extension: Schemas["NewExtension"]) => void) | null,
+ *   study: Study, model: Member, isBusy: boolean, reload?: () => void }} properties unchanged: the explanations whose
+ *   best fit changes no prediction
  */
 export function Explanations({ record, unchanged, ghost, kept, show, keep, add, study, model, isBusy, reload }) {
   const [asked, setAsked] = useState(/** @type {string | null} */ (null));
   const titleOf = useTitles(model);
   const [isAll, setAll] = useState(false);
   const effects = isAll ? record.effects : record.effects.slice(0, FIRST);
-  const made = new Set(
-    study.members
-      .filter((/** @type {any} */ m) => m.kind !== "search")
-      .map((/** @type {any} */ m) => m.effects.join(" ")),
-  );
+  const made = new Set(study.members.filter((m) => m.kind !== "search").map((m) => m.effects.join(" ")));
   const isMade = (/** @type {string} */ name) => made.has([...model.effects, name].join(" "));
-  const untried = new Map(record.not_tried.map((/** @type {any} */ e) => [e.name, e.why]));
-  const notesOn = (/** @type {any} */ effect) => {
+  const untried = new Map((record.not_tried ?? []).map((e) => [e.name, e.why]));
+  const notesOn = (/** @type {JudgedEffect} */ effect) => {
     const like = likeOf(record.effects, effect);
     const isOpen = like.length > 0 ? t`these data cannot tell it from ${few(like)}` : null;
     return [said(untried.get(effect.name) ?? ""), isOpen].filter(Boolean).join("; ");
@@ -58,7 +55,7 @@ export function Explanations({ record, unchanged, ghost, kept, show, keep, add, 
         </thead>
         <tbody>
           ${effects.map(
-            (/** @type {any} */ effect) => html`
+            (effect) => html`
               <tr
                 key=${effect.name}
                 class=${`${effect.name === ghost ? "shown" : ""} ${effect.in_credible_set ? "credible" : ""}`}
@@ -98,12 +95,11 @@ export function Explanations({ record, unchanged, ghost, kept, show, keep, add, 
                             </span>
                           `
                         : Object.entries(effect.parameters).map(
-                            ([name, value]) =>
-                              html`<div>${strength(name, /** @type {number} */ (value), effect.units[name])}</div>`,
+                            ([name, value]) => html`<div>${strength(name, value, effect.units?.[name])}</div>`,
                           )
                   }
                   ${
-                    effect.prior_sds !== null && Math.abs(effect.prior_sds) > 2
+                    typeof effect.prior_sds === "number" && Math.abs(effect.prior_sds) > 2
                       ? html`<span class="note">${digits(effect.prior_sds, 2)} sds out in its prior</span>`
                       : null
                   }
@@ -174,10 +170,10 @@ export function Explanations({ record, unchanged, ghost, kept, show, keep, add, 
 }
 
 /** What an explanation says, by its name: `Shear stress needs displacement along the rim to build up`. */
-export function useTitles(/** @type {any} */ model) {
+export function useTitles(/** @type {Member | undefined} */ model) {
   const { answer: catalogue } = useAnswer(path.effects);
-  const summaries = new Map((catalogue ?? []).map((/** @type {any} */ e) => [e.name, e.summary]));
-  const told = new Map((model?.story?.missing.leading ?? []).map((/** @type {any} */ e) => [e.name, e.summary]));
+  const summaries = new Map((catalogue ?? []).map((e) => [e.name, e.summary]));
+  const told = new Map((model?.story?.missing.leading ?? []).map((e) => [e.name, e.summary]));
   // A report carries the story, and no catalogue.
   const summaryOf = (/** @type {string} */ name) => summaries.get(name.split(".")[0]) ?? told.get(name);
   return (/** @type {string} */ name) => capital(OTHERS[name] ?? translated(summaryOf(name) ?? words(name)));
@@ -187,9 +183,8 @@ export function useTitles(/** @type {any} */ model) {
 const nats = (/** @type {number} */ value) => minus(value.toFixed(1)).replace(/^−(0\.0)$/, "$1");
 
 /** Whether the best fit leaves an effect out: its parameters are 0. */
-const isAbsent = (/** @type {any} */ { parameters }) =>
-  Object.keys(parameters).length > 0 &&
-  Object.values(parameters).every((value) => Math.abs(/** @type {number} */ (value)) < ZERO);
+const isAbsent = (/** @type {JudgedEffect} */ { parameters }) =>
+  Object.keys(parameters).length > 0 && Object.values(parameters).every((value) => Math.abs(value) < ZERO);
 
 /** A fitted parameter in its unit; records of earlier versions do not state it. */
 function strength(/** @type {string} */ name, /** @type {number} */ value, /** @type {string | undefined} */ stated) {
@@ -202,9 +197,11 @@ function strength(/** @type {string} */ name, /** @type {number} */ value, /** @
 /** Explanations of a class whose evidence differs by more than this are told apart by it [nats]. */
 const ALIKE = 3;
 
+/** @typedef {Pick<JudgedEffect, "name" | "class" | "log_bayes_factor">} Judged */
+
 /** The explanations that the data cannot tell from one: of its class, and alike in evidence. */
-export function likeOf(/** @type {any[]} */ effects, /** @type {any} */ effect) {
-  const isLike = (/** @type {any} */ other) =>
+export function likeOf(/** @type {Judged[]} */ effects, /** @type {Judged} */ effect) {
+  const isLike = (/** @type {Judged} */ other) =>
     other.class === effect.class &&
     other.name !== effect.name &&
     Math.abs(other.log_bayes_factor - effect.log_bayes_factor) <= ALIKE;
@@ -212,9 +209,10 @@ export function likeOf(/** @type {any[]} */ effects, /** @type {any} */ effect) 
 }
 
 /** What is sent to add an effect; `EFFECT.WHEEL` acts on one wheel. */
-function extension(/** @type {string} */ name, /** @type {any} */ record) {
+function extension(/** @type {string} */ name, /** @type {Discovery} */ record) {
   const named = record.extension;
-  if (named?.on_wheel && `${named.on_wheel.effect}.${named.on_wheel.wheel}` === name) return named.on_wheel;
+  if (named && "on_wheel" in named && `${named.on_wheel.effect}.${named.on_wheel.wheel}` === name)
+    return named.on_wheel;
   const [effect, wheel] = name.split(".");
   return wheel ? { effect, wheel } : { effect };
 }

@@ -18,7 +18,7 @@ const KINDS = {
 };
 
 /**
- * @param {{ name: string, text: string, kind: string, isUsed: boolean, error: any,
+ * @param {{ name: string, text: string, kind: string, isUsed: boolean, error: Error | null,
  *   onText: (text: string) => void, onRemove: () => void }} properties
  */
 export function FileCard({ name, text, kind, isUsed, error, onText, onRemove }) {
@@ -44,7 +44,7 @@ export function FileCard({ name, text, kind, isUsed, error, onText, onRemove }) 
               aria-label=${t`text of ${name}`}
               spellcheck=${false}
               value=${text}
-              onInput=${(/** @type {any} */ e) => onText(e.target.value)}
+              onInput=${(/** @type {FieldEvent<HTMLTextAreaElement>} */ e) => onText(e.currentTarget.value)}
             ></textarea>
           </details>
         `

@@ -6,17 +6,17 @@ import { said } from "../words/clauses.js";
 import { modelName } from "../words/model.js";
 import { capital, words } from "../words/quantity.js";
 
-/** @param {{ study: any }} properties */
+/** @param {{ study: Study }} properties */
 export function Flags({ study }) {
-  const isOld = (/** @type {any} */ flag) =>
+  const isOld = (/** @type {Flag} */ flag) =>
     flag.calibration !== null && flag.calibration !== undefined && flag.calibration !== study.current;
-  const now = study.flags.filter((/** @type {any} */ f) => !isOld(f));
+  const now = study.flags.filter((f) => !isOld(f));
   const old = study.flags.filter(isOld);
   const name = (/** @type {number} */ id) => {
-    const member = study.members.find((/** @type {any} */ m) => m.id === id);
+    const member = study.members.find((m) => m.id === id);
     return member ? modelName(study, member) : t`calibration ${id}`;
   };
-  const current = study.members.find((/** @type {any} */ m) => m.id === study.current);
+  const current = study.members.find((m) => m.id === study.current);
   return html`
     <h2 class="attention">What deserves attention</h2>
     ${
@@ -31,10 +31,10 @@ export function Flags({ study }) {
           <summary>
             ${old.length === 1 ? t`1 flag` : t`${old.length} flags`} of models that are no longer the current one
           </summary>
-          ${[...new Set(old.map((/** @type {any} */ f) => f.calibration))].map(
+          ${[...new Set(old.map((f) => f.calibration))].map(
             (id) => html`
               <h3>${name(/** @type {number} */ (id))}</h3>
-              <${List} flags=${old.filter((/** @type {any} */ f) => f.calibration === id)} />
+              <${List} flags=${old.filter((f) => f.calibration === id)} />
             `,
           )}
         </details>
@@ -67,17 +67,17 @@ const KINDS = /** @type {Record<string, string>} */ ({
 const FIRST = 3;
 
 /** Flags by the weight of their kind, those of a kind as the service orders them. */
-export function byWeight(/** @type {any[]} */ flags) {
+export function byWeight(/** @type {Flag[]} */ flags) {
   const kinds = Object.keys(KINDS);
-  const weight = (/** @type {any} */ flag) => (kinds.includes(flag.kind) ? kinds.indexOf(flag.kind) : kinds.length);
+  const weight = (/** @type {Flag} */ flag) => (kinds.includes(flag.kind) ? kinds.indexOf(flag.kind) : kinds.length);
   return flags.toSorted((a, b) => weight(a) - weight(b));
 }
 
-/** @param {{ flags: any[], model?: string }} properties model: whose name is not said again in each line */
+/** @param {{ flags: Flag[], model?: string }} properties model: whose name is not said again in each line */
 function List({ flags, model }) {
   const ordered = byWeight(flags);
   const later = ordered.slice(FIRST);
-  const list = (/** @type {any[]} */ some) => html`
+  const list = (/** @type {Flag[]} */ some) => html`
     <ul class="flags">
       ${some.map((f) => html`<li><b>${capital(KINDS[f.kind] ?? words(f.kind))}</b>: ${flagWords(f.text, model)}</li>`)}
     </ul>

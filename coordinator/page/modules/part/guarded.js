@@ -2,7 +2,7 @@
 
 import { html, useErrorBoundary } from "../html.js";
 
-/** @param {{ title: string, children?: any }} properties */
+/** @param {{ title: string, children?: unknown }} properties */
 export function Guarded({ title, children }) {
   const [error] = useErrorBoundary();
   return error ? html`<p class="error" role="alert">${title} cannot be shown: ${error.message}.</p>` : children;

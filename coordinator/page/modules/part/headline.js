@@ -18,7 +18,7 @@ import { isAddition, TakeBack } from "./take_back.js";
 
 const USES = { fit: t`fitted runs`, holdout: t`held-out runs` };
 
-/** @param {{ study: any, model: any, reload?: () => void }} properties */
+/** @param {{ study: Study, model: ToldModel, reload?: () => void }} properties */
 export function Headline({ study, model, reload }) {
   const changes = errorChanges(study, model);
   const bars = explanations(model.story.missing);
@@ -26,9 +26,7 @@ export function Headline({ study, model, reload }) {
     <section class="headline" aria-label="What was found">
       <div>
         <h2>${headline(model, changes)}.</h2>
-        ${model.story.missing.already_added.map(
-          (/** @type {any} */ effect) => html`<${Added} key=${effect.name} effect=${effect} />`,
-        )}
+        ${model.story.missing.already_added.map((effect) => html`<${Added} key=${effect.name} effect=${effect} />`)}
         ${changes.length > 0 && html`<${Errors} changes=${changes} />`}
         ${
           bars.length > 0 &&
@@ -73,7 +71,7 @@ export function Headline({ study, model, reload }) {
 }
 
 /** An effect that was added, in plain words, with its strength. */
-function Added(/** @type {{ effect: any }} */ { effect }) {
+function Added(/** @type {{ effect: Schemas["AddedEffect"] }} */ { effect }) {
   const strength = strengthWords(effect);
   return html`
     <p>

@@ -10,19 +10,18 @@ import { t, told } from "../language/language.js";
 /** The first cells of a row, as they stand in the file. */
 const shown = (/** @type {string[]} */ cells) => cells.map((cell) => cell || "–").join(" · ");
 
-/** @param {{ complaint: any, field?: string, onSkip: (row: Skipped) => void }} properties */
+/** @param {{ complaint: Complaint, field?: string, onSkip: (row: Skipped) => void }} properties */
 export function Mistake({ complaint, field, onSkip }) {
-  const isSkipped = complaint.fix === "skip" && complaint.line !== null;
+  const { line } = complaint;
   return html`
     <div class="error" data-field=${field}>
       ${told(inWords(complaint))}
       ${
-        isSkipped &&
+        complaint.fix === "skip" &&
+        typeof line === "number" &&
         html`
           <code class="row">${shown(complaint.row)}</code>
-          <button type="button" onClick=${() => onSkip({ line: complaint.line, cells: complaint.row })}>
-            Leave out line ${complaint.line}
-          </button>
+          <button type="button" onClick=${() => onSkip({ line, cells: complaint.row })}>Leave out line ${line}</button>
         `
       }
     </div>
@@ -62,7 +61,7 @@ export function SkippedRows({ skipped, onSkip, onTake }) {
           inputmode="numeric"
           aria-invalid=${text !== "" && !isLine}
           value=${text}
-          onInput=${(/** @type {any} */ e) => setText(e.target.value)}
+          onInput=${(/** @type {FieldEvent} */ e) => setText(e.currentTarget.value)}
         />
       </label>
       <button type="button" disabled=${!isLine} onClick=${leave}>Leave it out</button>
@@ -95,7 +94,7 @@ export function Meanings({ words, onChange }) {
               aria-label=${t`meaning of ${word}`}
               aria-invalid=${means === "?"}
               value=${means}
-              onChange=${(/** @type {any} */ e) => onChange({ ...words, [word]: e.target.value })}
+              onChange=${(/** @type {SelectEvent} */ e) => onChange({ ...words, [word]: e.currentTarget.value })}
             >
               ${means === "?" && html`<option value="?" selected>choose</option>`}
               ${MEANINGS.map(

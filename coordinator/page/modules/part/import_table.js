@@ -1,6 +1,7 @@
 // A person's table in their own columns and units: the guessed columns are shown, chosen by clicking, and become
 // runs.csv.
 
+import { errorOf } from "../rest/answers.js";
 import { save } from "../chart/download.js";
 import { html, useEffect, useMemo, useState } from "../html.js";
 import { byField, mapOf, meaningsOf, proposed, withAgain, without } from "../import_map.js";
@@ -38,10 +39,10 @@ const USUAL = [
  */
 export function ImportTable({ name, bytes, onFiles, onRemove }) {
   const content = useMemo(() => base64(bytes), [bytes]);
-  const [guess, setGuess] = useState(/** @type {any} */ (null));
+  const [guess, setGuess] = useState(/** @type {Guess | null} */ (null));
   const [choices, setChoices] = useState(/** @type {import("../import_map.js").Choices | null} */ (null));
-  const [answer, setAnswer] = useState(/** @type {any} */ (null));
-  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [answer, setAnswer] = useState(/** @type {Converted | null} */ (null));
+  const [failure, setFailure] = useState(/** @type {Error | null} */ (null));
   const [isAll, setAll] = useState(false);
   const look = async (/** @type {string | null} */ sheet) => {
     setFailure(null);
@@ -50,7 +51,7 @@ export function ImportTable({ name, bytes, onFiles, onRemove }) {
       setGuess(found);
       setChoices(proposed(found));
     } catch (error) {
-      setFailure(error);
+      setFailure(errorOf(error));
     }
   };
   useEffect(() => void look(null), [content]);
@@ -64,7 +65,7 @@ export function ImportTable({ name, bytes, onFiles, onRemove }) {
         const found = await importTable({ name, content_base64: content, map });
         if (!isOver) setAnswer(found);
       } catch (error) {
-        if (!isOver) setFailure(error);
+        if (!isOver) setFailure(errorOf(error));
       }
     }, PAUSE_MS);
     return () => {
@@ -86,22 +87,22 @@ export function ImportTable({ name, bytes, onFiles, onRemove }) {
         ${!failure && html`<p class="empty" aria-busy="true">The table is being read.</p>`}
       </div>
     `;
-  const isShown = (/** @type {any} */ field) =>
+  const isShown = (/** @type {FieldGuess} */ field) =>
     isAll || USUAL.includes(field.name) || choices.fields[field.name].column !== null;
   const fields = guess.fields.filter(isShown);
   const isUsed = Object.values(choices.fields).some((choice) => choice.formula !== "" && choice.column === null);
   const quantities = isUsed ? guess.quantities : [];
   const said = byField(
     answer?.complaints ?? [],
-    [...fields, ...quantities].map((/** @type {any} */ field) => field.name),
+    [...fields, ...quantities].map((field) => field.name),
   );
   const set = (
     /** @type {"fields" | "quantities"} */ kind,
-    /** @type {string} */ own,
+    /** @type {string} */ name,
     /** @type {Partial<Choice>} */ change,
-  ) => setChoices({ ...choices, [kind]: { ...choices[kind], [own]: { ...choices[kind][own], ...change } } });
+  ) => setChoices({ ...choices, [kind]: { ...choices[kind], [name]: { ...choices[kind][name], ...change } } });
   const skip = (/** @type {import("../import_map.js").Skipped} */ left) => setChoices(without(choices, left));
-  const row = (/** @type {any} */ field, /** @type {"fields" | "quantities"} */ kind) =>
+  const row = (/** @type {FieldGuess | QuantityGuess} */ field, /** @type {"fields" | "quantities"} */ kind) =>
     cells(
       field,
       choices[kind][field.name],
@@ -110,11 +111,11 @@ export function ImportTable({ name, bytes, onFiles, onRemove }) {
       (change) => set(kind, field.name, change),
       skip,
     );
-  const titles = guess.columns.map((/** @type {any} */ column) => column.title);
-  const samples = (guess.columns[0]?.sample ?? []).map((/** @type {string} */ _, /** @type {number} */ k) =>
-    guess.columns.map((/** @type {any} */ column) => column.sample[k] ?? ""),
-  );
-  const isRight = answer !== null && answer.complaints.length === 0;
+  const titles = guess.columns.map((column) => column.title);
+  const samples = (guess.columns[0]?.sample ?? []).map((_, k) => guess.columns.map((column) => column.sample[k] ?? ""));
+  // The rows, where nothing is wrong with the table.
+  const notes = answer?.notes;
+  const runs = answer?.complaints.length === 0 ? answer.runs : null;
   return html`
     <div class="card mapping">
       ${heading}
@@ -124,9 +125,12 @@ export function ImportTable({ name, bytes, onFiles, onRemove }) {
           guess.sheets.length > 1 &&
           html`
             <label>
-              Sheet <select value=${guess.sheet ?? ""} onChange=${(/** @type {any} */ e) => look(e.target.value)}>
+              Sheet <select
+                value=${guess.sheet ?? ""}
+                onChange=${(/** @type {SelectEvent} */ e) => look(e.currentTarget.value)}
+              >
                 ${guess.sheets.map(
-                  (/** @type {string} */ sheet) =>
+                  (sheet) =>
                     html`
                       <option value=${sheet} selected=${sheet === (guess.sheet ?? "")}>
                         ${sheet || t`(outside of structs)`}
@@ -144,7 +148,7 @@ export function ImportTable({ name, bytes, onFiles, onRemove }) {
               Decimal
               mark <select
                 value=${choices.decimal}
-                onChange=${(/** @type {any} */ e) => setChoices({ ...choices, decimal: e.target.value })}
+                onChange=${(/** @type {SelectEvent} */ e) => setChoices({ ...choices, decimal: e.currentTarget.value })}
               >
                 ${
                   choices.decimal === "?" &&
@@ -165,43 +169,40 @@ export function ImportTable({ name, bytes, onFiles, onRemove }) {
       <${Table}
         label=${t`Columns of ${name}`}
         head=${[t`quantity`, t`column`, t`unit`, t`or the same in all rows`]}
-        rows=${[
-          ...fields.map((/** @type {any} */ field) => row(field, "fields")),
-          ...quantities.map((/** @type {any} */ field) => row(field, "quantities")),
-        ]}
+        rows=${[...fields.map((field) => row(field, "fields")), ...quantities.map((field) => row(field, "quantities"))]}
       />
       ${
         !isAll && html`<p><button type="button" onClick=${() => setAll(true)}>Show all columns of runs.csv</button></p>`
       }
-      ${said.others.map((/** @type {any} */ complaint) => html`<${Mistake} complaint=${complaint} onSkip=${skip} />`)}
+      ${said.others.map((complaint) => html`<${Mistake} complaint=${complaint} onSkip=${skip} />`)}
       <${SkippedRows}
         skipped=${choices.skipped}
         onSkip=${skip}
         onTake=${(/** @type {number} */ line) => setChoices(withAgain(choices, line))}
       />
       <${Failure} error=${failure} />
-      ${(answer?.remarks ?? []).map((/** @type {string} */ remark) => html`<p class="note">${told(remark)}</p>`)}
+      ${(answer?.remarks ?? []).map((remark) => html`<p class="note">${told(remark)}</p>`)}
       <div class="actions">
         <button
           class="main"
           type="button"
-          disabled=${!isRight}
-          onClick=${() => onFiles({ "runs.csv": answer.runs, ...answer.histories })}
+          disabled=${!runs}
+          onClick=${() => runs && onFiles({ "runs.csv": runs, ...answer?.histories })}
         >
           ${
-            isRight
-              ? t`Use these ${answer.run_count} runs`
+            runs
+              ? t`Use these ${answer?.run_count} runs`
               : answer === null
                 ? t`The table is being judged`
                 : t`Use these columns: answer what is marked`
           }
         </button>
-        <button type="button" onClick=${() => keep("map.toml", /** @type {string} */ (map))}>Save the map</button>
-        ${isRight && html`<button type="button" onClick=${() => keep("runs.csv", answer.runs)}>Save runs.csv</button>`}
+        <button type="button" onClick=${() => keep("map.toml", map ?? "")}>Save the map</button>
+        ${runs && html`<button type="button" onClick=${() => keep("runs.csv", runs)}>Save runs.csv</button>`}
         ${
-          isRight &&
-          answer.notes &&
-          html`<button type="button" onClick=${() => keep("runs-notes.csv", answer.notes)}>Save the notes</button>`
+          runs &&
+          notes &&
+          html`<button type="button" onClick=${() => keep("runs-notes.csv", notes)}>Save the notes</button>`
         }
       </div>
     </div>
@@ -213,27 +214,28 @@ export function ImportTable({ name, bytes, onFiles, onRemove }) {
  * @returns {unknown[]}
  */
 function cells(
-  /** @type {any} */ field,
+  /** @type {FieldGuess | QuantityGuess} */ field,
   /** @type {Choice} */ choice,
-  /** @type {any[]} */ columns,
-  /** @type {any[]} */ complaints,
+  /** @type {ColumnCard[]} */ columns,
+  /** @type {Complaint[]} */ complaints,
   /** @type {(change: Partial<Choice>) => void} */ onChange,
   /** @type {(row: import("../import_map.js").Skipped) => void} */ onSkip,
 ) {
   const absent =
-    ABSENT[field.name] ?? (choice.formula !== "" ? choice.formula : field.is_needed ? t`(none)` : t`(not measured)`);
+    ABSENT[field.name] ??
+    (choice.formula !== "" ? choice.formula : "is_needed" in field && field.is_needed ? t`(none)` : t`(not measured)`);
   const isOpen = choice.unit === "" && (choice.column !== null || choice.value !== "");
   const words = told(field.words);
   const fillDown = complaints.some((complaint) => complaint.fix === "fill_down")
     ? () => onChange({ fillsDown: true })
     : null;
   const take = (/** @type {string} */ name) => {
-    const column = columns.find((one) => one.name === name);
+    const column = columns.find((card) => card.name === name);
     onChange({
       column: column?.name ?? null,
       fillsDown: false,
       words: field.name === "use" ? meaningsOf(column) : {},
-      ...(column ? { unit: field.units.includes(column.unit) ? column.unit : "" } : {}),
+      ...(column ? { unit: field.units.find((unit) => unit === column.unit) ?? "" } : {}),
     });
   };
   return [
@@ -248,7 +250,7 @@ function cells(
           aria-label=${t`column of ${words}`}
           aria-invalid=${complaints.length > 0}
           value=${choice.column ?? ""}
-          onChange=${(/** @type {any} */ e) => take(e.target.value)}
+          onChange=${(/** @type {SelectEvent} */ e) => take(e.currentTarget.value)}
         >
           <option value="" selected=${choice.column === null}>${absent}</option>
           ${columns.map(
@@ -270,7 +272,7 @@ function cells(
             aria-label=${t`unit of ${words}`}
             aria-invalid=${isOpen}
             value=${choice.unit}
-            onChange=${(/** @type {any} */ e) => onChange({ unit: e.target.value })}
+            onChange=${(/** @type {SelectEvent} */ e) => onChange({ unit: e.currentTarget.value })}
           >
             <option value="" selected=${choice.unit === ""}>choose</option>
             ${field.units.map(
@@ -286,7 +288,7 @@ function cells(
             size="10"
             aria-label=${t`${words} of all rows`}
             value=${choice.value}
-            onInput=${(/** @type {any} */ e) => onChange({ value: e.target.value })}
+            onInput=${(/** @type {FieldEvent} */ e) => onChange({ value: e.currentTarget.value })}
           />
         `,
   ];

@@ -7,7 +7,7 @@ import { said, sentence } from "../words/clauses.js";
 import { digits, duration } from "../words/quantity.js";
 import { Table } from "./table.js";
 
-/** @param {{ answer: import("../rest/routes.js").Schemas["JobCheck"] }} properties */
+/** @param {{ answer: Schemas["JobCheck"] }} properties */
 export function JobCheck({ answer }) {
   const notes = [...answer.warnings, ...new Set(answer.models.flatMap((model) => model.limits)), ...answer.additions];
   return html`
@@ -21,7 +21,7 @@ export function JobCheck({ answer }) {
   `;
 }
 
-function Model(/** @type {{ model: import("../rest/routes.js").Schemas["CheckedModel"] }} */ { model }) {
+function Model(/** @type {{ model: Schemas["CheckedModel"] }} */ { model }) {
   const rows = model.parameters.map((parameter) => {
     const called = shownParameter(parameter);
     const value = (/** @type {number | null | undefined} */ v) =>
@@ -68,7 +68,7 @@ function Model(/** @type {{ model: import("../rest/routes.js").Schemas["CheckedM
 }
 
 /** `About 9543 evaluations of 24 simulations each: 10 s on one core, 5 s on the 2 cores here`. */
-function costWords(/** @type {import("../rest/routes.js").Schemas["CheckedModel"]} */ { cost, without_cost: reason }) {
+function costWords(/** @type {Schemas["CheckedModel"]} */ { cost, without_cost: reason }) {
   if (!cost) return t`The cost is not known: ${reason}.`;
   const count = Number(cost.evaluations.toPrecision(2)).toLocaleString("en").replaceAll(",", "\u202f");
   const [alone, here] = [cost.core_s, cost.core_s / cost.cores].map(duration);

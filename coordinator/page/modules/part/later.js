@@ -2,18 +2,21 @@
 // another view.
 
 import { html, useEffect, useState } from "../html.js";
+import { errorOf } from "../rest/answers.js";
 import { Pending } from "./message.js";
 
 /**
- * @param {{ title: string, load: () => Promise<any>, [property: string]: any }} properties load: gives the view, always
- *   the same. The other properties are those of the view.
+ * @param {{ title: string, load: () => Promise<unknown>, [property: string]: unknown }} properties load: gives the
+ *   view, always the same. The other properties are those of the view.
  */
 export function Later({ title, load, ...properties }) {
-  const [loaded, setLoaded] = useState(/** @type {any} */ ({ view: null, error: null }));
+  const [loaded, setLoaded] = useState(
+    /** @type {{ view: unknown, error: Error | null }} */ ({ view: null, error: null }),
+  );
   useEffect(() => {
     load().then(
       (view) => setLoaded({ view, error: null }),
-      (error) => setLoaded({ view: null, error }),
+      (error) => setLoaded({ view: null, error: errorOf(error) }),
     );
   }, [load]);
   return loaded.view

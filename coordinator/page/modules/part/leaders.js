@@ -4,7 +4,7 @@ import { html } from "../html.js";
 import { translated, t } from "../language/language.js";
 import { probability } from "../words/quantity.js";
 
-/** @param {{ search: any }} properties search: of the progress of a search */
+/** @param {{ search: Schemas["SearchProgress"] }} properties search: of the progress of a search */
 export function Leaders({ search }) {
   return html`
     <p>The search now ${translated(search.doing)}.</p>
@@ -14,7 +14,7 @@ export function Leaders({ search }) {
         <h3>Leaders so far</h3>
         <ol class="leaders bars" aria-label="Leaders so far">
           ${search.leaders.map(
-            (/** @type {any} */ leader) => html`
+            (leader) => html`
               <li key=${leader.effects.join(" ")}>
                 <span class="bar"><i style=${{ width: `${(100 * leader.probability).toFixed(1)}%` }}></i></span>
                 <span class="number">P ${probability(leader.probability)}</span>

@@ -6,11 +6,14 @@ import { dataSets, runWords } from "../words/ledger.js";
 import { CHANNELS, errorWords, minus, short, shown, titled, unitOf } from "../words/quantity.js";
 import { Table } from "./table.js";
 
+/** @typedef {import("../words/ledger.js").LedgerLine} LedgerLine */
+
 const USES = { fit: t`fitted`, holdout: t`held out` };
+const BOTH = /** @type {const} */ (["fit", "holdout"]);
 
 /**
  * A table for each set of runs: neither errors nor evidence compare between them.
- * @param {{ study: any, lines: import("../words/ledger.js").LedgerLine[] }} properties
+ * @param {{ study: Study, lines: LedgerLine[] }} properties
  */
 export function Ledger({ study, lines }) {
   const sets = dataSets(lines);
@@ -29,10 +32,10 @@ export function Ledger({ study, lines }) {
 }
 
 /**
- * @param {{ study: any, lines: import("../words/ledger.js").LedgerLine[], label: string }} properties
+ * @param {{ study: Study, lines: LedgerLine[], label: string }} properties
  */
 function SetLedger({ study, lines, label }) {
-  const channels = CHANNELS.filter((channel) => lines.some(({ line }) => line.error.fit[channel]));
+  const channels = CHANNELS.filter((channel) => lines.some(({ line }) => line.error.fit?.[channel]));
   const head = [
     t`model`,
     t`runs`,
@@ -43,34 +46,38 @@ function SetLedger({ study, lines, label }) {
   ];
   const row = (
     /** @type {string} */ name,
-    /** @type {"fit" | "holdout"} */ use,
-    /** @type {any} */ error,
+    /** @type {Use} */ use,
+    /** @type {ErrorTable} */ error,
     /** @type {number | null | undefined} */ inside,
     evidence = "",
   ) => [
     name,
     USES[use],
-    ...channels.map((c) => (error[c] ? errorWords(error[c].rmse * shown(unitOf(c)).scale) : "–")),
+    ...channels.map((c) => {
+      const ofChannel = error[c];
+      return ofChannel ? errorWords(ofChannel.rmse * shown(unitOf(c)).scale) : "–";
+    }),
     errorWords(error.all.rmse_fixed_sigma ?? error.all.rmse_sigma),
     inside === null || inside === undefined ? "–" : `${Math.round(100 * inside)} %`,
     evidence,
   ];
   const rows = lines.flatMap(({ name, line }) =>
-    /** @type {const} */ (["fit", "holdout"])
-      .filter((use) => line.error[use])
-      .map((use) => {
-        const evidence = use === "fit" && line.log_evidence !== null ? minus(line.log_evidence.toFixed(1)) : "";
-        return row(use === "fit" ? name : "", use, line.error[use], line.coverage90?.[use], evidence);
-      }),
+    BOTH.flatMap((use) => {
+      const error = line.error[use];
+      if (!error) return [];
+      const evidence =
+        use === "fit" && typeof line.log_evidence === "number" ? minus(line.log_evidence.toFixed(1)) : "";
+      return [row(use === "fit" ? name : "", use, error, line.coverage90[use], evidence)];
+    }),
   );
-  const besides = beside(study, lines).filter(([, of]) => of?.holdout);
-  for (const [name, of] of besides) rows.push(row(name, "holdout", of.holdout, of.coverage90?.holdout));
+  const besides = beside(study, lines).filter(({ holdout }) => holdout);
+  for (const { name, holdout, inside } of besides) if (holdout) rows.push(row(name, "holdout", holdout, inside));
   const isByWidth = lines.some(({ line }) =>
-    /** @type {const} */ (["fit", "holdout"]).some((use) => isInsideByWidth(line.error[use], line.coverage90?.[use])),
+    BOTH.some((use) => isInsideByWidth(line.error[use], line.coverage90[use])),
   );
   return html`
     <${Table} label=${label} head=${head} rows=${rows} numbers=${head.map((_, k) => k).filter((k) => k > 1)} />
-    ${besides.length > 0 && html`<p class="note">${besides.map(([, , words]) => words).join(" ")}</p>`}
+    ${besides.length > 0 && html`<p class="note">${besides.map(({ meaning }) => meaning).join(" ")}</p>`}
     ${
       isByWidth &&
       html`
@@ -86,30 +93,37 @@ function SetLedger({ study, lines, label }) {
 const LARGE = 3;
 
 /** Whether the intervals hold every measurement although the errors are large: they are much wider than the noise. */
-function isInsideByWidth(/** @type {any} */ error, /** @type {number | null | undefined} */ inside) {
-  return Boolean(error) && inside === 1 && (error.all.rmse_fixed_sigma ?? 0) > LARGE;
+function isInsideByWidth(
+  /** @type {ErrorTable | null | undefined} */ error,
+  /** @type {number | null | undefined} */ inside,
+) {
+  return inside === 1 && (error?.all.rmse_fixed_sigma ?? 0) > LARGE;
 }
 
 /** What predicts held-out runs beside the models as they are, among the lines with the current model; what it is. */
-function beside(/** @type {any} */ study, /** @type {any[]} */ lines) {
-  const current = lines.find((own) => own.id === study.current)?.line;
-  const combined = current && study.combined?.models > 1 ? study.combined : null;
-  return /** @type {[string, any, string][]} */ ([
-    [
-      t`current, corrected`,
-      current?.corrected,
-      t`Current, corrected: the current model and what it misses at the fitted conditions, interpolated.`,
-    ],
-    [
-      t`all, combined`,
-      combined,
-      t`All, combined: the corrected models together, weighed by how well each predicts the fitted runs.`,
-    ],
-    [
-      t`interpolation`,
-      current?.baseline,
-      t`Interpolation: the fitted measurements without any model, extrapolated beyond them, on the runs where that is
-        possible.`,
-    ],
-  ]);
+function beside(/** @type {Study} */ study, /** @type {LedgerLine[]} */ lines) {
+  const current = lines.find((line) => line.id === study.current)?.line;
+  const combined = current && study.combined && study.combined.models > 1 ? study.combined : null;
+  const corrected = current?.corrected;
+  return [
+    {
+      name: t`current, corrected`,
+      holdout: corrected?.holdout,
+      inside: corrected?.coverage90.holdout,
+      meaning: t`Current, corrected: the current model and what it misses at the fitted conditions, interpolated.`,
+    },
+    {
+      name: t`all, combined`,
+      holdout: combined?.holdout,
+      inside: combined?.coverage90.holdout,
+      meaning: t`All, combined: the corrected models together, weighed by how well each predicts the fitted runs.`,
+    },
+    {
+      name: t`interpolation`,
+      holdout: current?.baseline.holdout,
+      inside: null,
+      meaning: t`Interpolation: the fitted measurements without any model, extrapolated beyond them, on the runs where
+        that is possible.`,
+    },
+  ];
 }

@@ -21,7 +21,7 @@ export function Login() {
           type="password"
           autocomplete="off"
           value=${secret}
-          onInput=${(/** @type {any} */ e) => setSecret(e.target.value)}
+          onInput=${(/** @type {FieldEvent} */ e) => setSecret(e.currentTarget.value)}
         />
       </label>
       <button class="main" type="submit">Use it</button>

@@ -1,13 +1,14 @@
 // What stands where nothing else does: a wait, an error, an empty place; each says what to do.
 
 import { html, useEffect, useState } from "../html.js";
+import { AnswerError } from "../rest/answers.js";
 
 /** A wait that is longer has a reason [ms]. */
 const LONG_MS = 1500;
 
-/** @param {{ answer: unknown, error: any, children?: unknown, what: string }} properties */
-export function Pending({ answer, error, what }) {
-  if (error && error.status === 409) return html`<p class="empty">${error.message}.</p>`;
+/** @param {{ answer: unknown, error: Error | null, children?: unknown, what: string }} properties */
+export function Pending({ error, what }) {
+  if (error instanceof AnswerError && error.status === 409) return html`<p class="empty">${error.message}.</p>`;
   if (error) return html`<p class="error" role="alert">${what}: ${error.message}</p>`;
   return html`<${Wait} what=${what} />`;
 }
@@ -29,7 +30,7 @@ function Wait(/** @type {{ what: string }} */ { what }) {
   `;
 }
 
-/** @param {{ error: any }} properties */
+/** @param {{ error: Error | null }} properties */
 export function Failure({ error }) {
   return error ? html`<p class="error" role="alert">${error.message}</p>` : null;
 }

@@ -107,7 +107,7 @@ export function ModelChoices({ choices, wheels, change }) {
         After the
         calibration <select
           value=${search}
-          onChange=${(/** @type {any} */ e) => change({ ...choices, search: e.target.value })}
+          onChange=${(/** @type {SelectEvent} */ e) => change({ ...choices, search: e.currentTarget.value })}
         >
           ${template.SEARCHES.map(
             ([name, meaning]) => html`<option value=${name} selected=${name === search}>${meaning}</option>`,
@@ -144,7 +144,7 @@ function Priors({ choices, wheels, change }) {
           <span><b>${called}</b> <span class="note">${prior.meaning}</span></span>
           <select
             aria-label=${t`form of the prior of ${called}`}
-            onChange=${(/** @type {any} */ e) => set(prior.name, { ...typed, form: e.target.value })}
+            onChange=${(/** @type {SelectEvent} */ e) => set(prior.name, { ...typed, form: e.currentTarget.value })}
           >
             ${forms.map(
               ([form, meaning]) => html`<option value=${form} selected=${form === typed.form}>${meaning}</option>`,
@@ -152,21 +152,21 @@ function Priors({ choices, wheels, change }) {
           </select>
           ${typed.texts.slice(0, count(typed.form)).map(
             (text, k) => html`
-                <input
-                  size="8"
-                  inputmode="decimal"
-                  aria-label=${t`number ${k + 1} of the prior of ${called}`}
-                  placeholder=${isRadius ? [t`radius`, t`1.24 × radius`][k] : ""}
-                  value=${text}
-                  onInput=${(/** @type {any} */ e) =>
-                    set(prior.name, {
-                      ...typed,
-                      texts: /** @type {[string, string]} */ (
-                        typed.texts.map((old, i) => (i === k ? e.target.value : old))
-                      ),
-                    })}
-                />
-              `,
+              <input
+                size="8"
+                inputmode="decimal"
+                aria-label=${t`number ${k + 1} of the prior of ${called}`}
+                placeholder=${isRadius ? [t`radius`, t`1.24 × radius`][k] : ""}
+                value=${text}
+                onInput=${(/** @type {FieldEvent} */ e) =>
+                  set(prior.name, {
+                    ...typed,
+                    texts: /** @type {[string, string]} */ (
+                      typed.texts.map((old, i) => (i === k ? e.currentTarget.value : old))
+                    ),
+                  })}
+              />
+            `,
           )}
           ${
             choices.changed[prior.name] &&
@@ -198,7 +198,7 @@ function Effects(/** @type {{ effects: string[], change: (effects: string[]) => 
   const flip = (/** @type {string} */ name) =>
     change(effects.includes(name) ? effects.filter((one) => one !== name) : [...effects, name]);
   return html`
-    <details onToggle=${(/** @type {any} */ e) => setOpen(e.target.open)}>
+    <details onToggle=${(/** @type {DetailsEvent} */ e) => setOpen(e.currentTarget.open)}>
       <summary>
         ${
           effects.length === 0
@@ -208,7 +208,7 @@ function Effects(/** @type {{ effects: string[], change: (effects: string[]) => 
       </summary>
       <div class="choices many" tabindex="0" role="region" aria-label="Effects of the catalogue">
         ${(catalogue ?? []).map(
-          (/** @type {any} */ effect) =>
+          (effect) =>
             html`
               <label key=${effect.name}>
                 <input

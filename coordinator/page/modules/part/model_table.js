@@ -5,7 +5,7 @@ import { t } from "../language/language.js";
 import { comparedModels, leftOutWords } from "../words/compared_model.js";
 import { Table } from "./table.js";
 
-/** @param {{ comparison: any }} properties */
+/** @param {{ comparison: ModelComparison }} properties */
 export function ModelTable({ comparison }) {
   const { head, rows } = comparedModels(comparison);
   const numbers = head.map((_, k) => k).filter((k) => k > 0 && k < head.length - 1);

@@ -1,6 +1,7 @@
 // Measured runs are typed in here, the proposed ones first; the study is calibrated again with them, or a campaign goes
 // on with them.
 
+import { errorOf } from "../rest/answers.js";
 import { d3 } from "../chart/library.js";
 import { table } from "../chart/download.js";
 import { html, useState } from "../html.js";
@@ -29,19 +30,20 @@ const COLUMNS = /** @type {Record<string, string>} */ ({
  */
 
 /**
- * @param {{ study: any, model: any, record: { next_runs: any[] }, comparison: any, reload?: () => void, follow?: (rows:
- *   Record<string, any>[]) => Promise<void>, further?: number }} properties follow: takes the rows in place of a
- *   calibration. further: the number of runs that the study does not have and whose names are taken
+ * @param {{ study: Study, model: Member, record: { next_runs: NextRun[] }, comparison: Comparison, reload?: () => void,
+ *   follow?: (rows: import("../chart/figure.js").Row[]) => Promise<void>, further?: number }} properties follow: takes
+ *   the rows in place of a calibration. further: the number of runs that the study does not have and whose names are
+ *   taken
  */
 export function NewRuns({ study, model, record, comparison, reload, follow, further = 0 }) {
   const { answer: experiment, error } = useAnswer(path.experiment(study.experiment));
   const [rows, setRows] = useState(/** @type {NewRun[] | null} */ (null));
-  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [failure, setFailure] = useState(/** @type {Error | null} */ (null));
   const [isBusy, setBusy] = useState(false);
-  const channels = CHANNELS.filter((c) => comparison.rows.some((/** @type {any} */ r) => r.channel === c));
+  const channels = CHANNELS.filter((c) => comparison.rows.some((r) => r.channel === c));
   const rigs = rigsOf(experiment);
-  const isAngled = new Set(comparison.rows.map((/** @type {any} */ r) => r.slip_angle_deg)).size > 1;
-  const count = new Set(comparison.rows.map((/** @type {any} */ r) => r.run)).size + further;
+  const isAngled = new Set(comparison.rows.map((r) => r.slip_angle_deg)).size > 1;
+  const count = new Set(comparison.rows.map((r) => r.run)).size + further;
   const blank = (/** @type {number} */ k) => ({
     run: `next-${count + k + 1}`,
     rig: "",
@@ -51,7 +53,7 @@ export function NewRuns({ study, model, record, comparison, reload, follow, furt
     angle: "",
     values: {},
   });
-  const proposed = record.next_runs.map((/** @type {any} */ r, /** @type {number} */ k) => ({
+  const proposed = record.next_runs.map((r, k) => ({
     ...blank(k),
     slip: typed(r.slip, slipUnit),
     load: typed(r.wheel_load_n, shown("N")),
@@ -102,7 +104,7 @@ export function NewRuns({ study, model, record, comparison, reload, follow, furt
         location.hash = address(["studies", added.study, "live"]);
       }
     } catch (error) {
-      setFailure(error);
+      setFailure(errorOf(error));
     }
     setBusy(false);
   };
@@ -120,7 +122,7 @@ export function NewRuns({ study, model, record, comparison, reload, follow, furt
           aria-invalid=${isNumber && value !== "" && numberOf(value) === null}
           size="7"
           value=${value}
-          onInput=${(/** @type {any} */ e) => change(e.target.value)}
+          onInput=${(/** @type {FieldEvent} */ e) => change(e.currentTarget.value)}
         />
       </td>
     `;
@@ -153,7 +155,7 @@ export function NewRuns({ study, model, record, comparison, reload, follow, furt
                           aria-label=${t`wheel of run ${k + 1}`}
                           value=${row.rig}
                           required=${isFilled(row)}
-                          onChange=${(/** @type {any} */ e) => set(k, { rig: e.target.value })}
+                          onChange=${(/** @type {SelectEvent} */ e) => set(k, { rig: e.currentTarget.value })}
                         >
                           <option value="">choose</option>
                           ${rigs.map(
@@ -208,11 +210,11 @@ export function NewRuns({ study, model, record, comparison, reload, follow, furt
  * The wheels of an experiment with the soils that they ran on.
  * @returns {{ wheel: string, soil: string, label: string }[]}
  */
-function rigsOf(/** @type {any} */ experiment) {
+function rigsOf(/** @type {Answer<"get_experiment"> | null} */ experiment) {
   // Row by row: a parser of objects compiles code, which the page's policy forbids. Comments may stand above the
   // header.
   const tables = Object.values(experiment?.files ?? {}).map((text) =>
-    d3.csvParseRows(/** @type {string} */ (text).replace(/^\uFEFF/, "")).map((row) => row.map((cell) => cell.trim())),
+    d3.csvParseRows(text.replace(/^\uFEFF/, "")).map((row) => row.map((cell) => cell.trim())),
   );
   const headerOf = (/** @type {string[][]} */ rows) => rows.find((row) => row.includes("run") && row.includes("wheel"));
   const rows = tables.find(headerOf) ?? [];

@@ -10,20 +10,20 @@ function folded(/** @type {string[]} */ names) {
   return names.filter((name) => !name.includes(".") || !names.includes(name.split(".")[0]));
 }
 
-/** @param {{ record: any }} properties */
+/** @param {{ record: Discovery }} properties */
 export function NotTried({ record }) {
   /** @type {Map<string, { names: string[], why: string, needs: string }>} */
   const untried = new Map();
-  for (const { name, why, needs } of record.not_tried) {
+  for (const { name, why, needs } of record.not_tried ?? []) {
     const same = untried.get(`${why} ${needs}`) ?? { names: /** @type {string[]} */ ([]), why, needs };
     same.names.push(name);
     untried.set(`${why} ${needs}`, same);
   }
-  const lists = [
+  const lists = /** @type {[string, string[]][]} */ ([
     [t`too weak to be seen with these data at usual strength`, record.cannot_exclude],
     [t`refused by the model at every strength`, record.refused],
     [t`no longer improves the evidence`, record.drop],
-  ];
+  ]);
   return html`
     ${
       untried.size > 0 &&
@@ -50,8 +50,8 @@ export function NotTried({ record }) {
       .map(
         ([words, names]) => html`
           <details>
-            <summary>${folded(/** @type {string[]} */ (names)).length} ${words}</summary>
-            <p>${folded(/** @type {string[]} */ (names)).join(", ")}</p>
+            <summary>${folded(names).length} ${words}</summary>
+            <p>${folded(names).join(", ")}</p>
           </details>
         `,
       )}

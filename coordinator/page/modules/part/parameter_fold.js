@@ -6,7 +6,7 @@ import { Later } from "./later.js";
 const sliders = () => import("./parameter_sliders.js").then((module) => module.ParameterSliders);
 
 /**
- * @param {{ model: any, line: any, rows: any[], axis: any, name: string }} properties
+ * @param {{ model: Member, line: LedgerEntry, rows: MeasuredRow[], axis: ConditionAxis, name: string }} properties
  *   line: of the ledger. rows: of the comparison. axis: the condition that the pictures are drawn against.
  */
 export function ParameterFold({ model, line, rows, axis, name }) {
@@ -27,7 +27,7 @@ export function ParameterFold({ model, line, rows, axis, name }) {
           />
         `;
   return html`
-    <details class="sliders" onToggle=${(/** @type {any} */ event) => setOpen(event.target.open)}>
+    <details class="sliders" onToggle=${(/** @type {DetailsEvent} */ event) => setOpen(event.currentTarget.open)}>
       <summary>What each parameter does</summary>
       ${isOpen && what}
     </details>

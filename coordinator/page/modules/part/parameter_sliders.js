@@ -16,8 +16,8 @@ import { Table } from "./table.js";
 /** @typedef {import("../response_surface.js").ResponseSurface} ResponseSurface */
 
 /**
- * @param {{ model: any, rows: any[], axis: any, name: string }} properties rows: of the comparison. axis: the condition
- *   that the pictures are drawn against.
+ * @param {{ model: Member, rows: MeasuredRow[], axis: ConditionAxis, name: string }} properties rows: of the
+ *   comparison. axis: the condition that the pictures are drawn against.
  */
 export function ParameterSliders({ model, rows, axis, name }) {
   const { answer, error } = useAnswer(path.responseSurface(model.id));
@@ -26,7 +26,7 @@ export function ParameterSliders({ model, rows, axis, name }) {
 }
 
 /**
- * @param {{ surface: ResponseSurface, rows: any[], axis: any, name: string }} properties
+ * @param {{ surface: ResponseSurface, rows: MeasuredRow[], axis: ConditionAxis, name: string }} properties
  */
 function Sliders({ surface, rows, axis, name }) {
   const [setting, setSetting] = useState(meanSetting(surface));
@@ -67,7 +67,7 @@ function Sliders({ surface, rows, axis, name }) {
             <input
               type="checkbox"
               checked=${follows}
-              onChange=${(/** @type {any} */ event) => setFollows(event.target.checked)}
+              onChange=${(/** @type {FieldEvent} */ event) => setFollows(event.currentTarget.checked)}
             /> the
             others follow, as they do among the draws
           </label>
@@ -98,7 +98,7 @@ function Slider({ id, parameter, value, move }) {
         max=${coordinate(parameter, parameter.upper)}
         value=${coordinate(parameter, value)}
         aria-valuetext=${text}
-        onInput=${(/** @type {any} */ event) => move(valueAt(parameter, Number(event.target.value)))}
+        onInput=${(/** @type {FieldEvent} */ event) => move(valueAt(parameter, Number(event.currentTarget.value)))}
       />
     </div>
   `;
@@ -116,7 +116,7 @@ function reachWords(
 
 /**
  * What the setting is worth against the measurements, and what the surface is worth against the model.
- * @param {{ surface: ResponseSurface, rows: any[], outputs: Map<string, number> }} properties
+ * @param {{ surface: ResponseSurface, rows: MeasuredRow[], outputs: Map<string, number> }} properties
  */
 function Errors({ surface, rows, outputs }) {
   const atMean = useMemo(() => predict(surface, meanSetting(surface)).outputs, [surface]);

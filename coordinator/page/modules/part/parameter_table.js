@@ -6,12 +6,17 @@ import { meanAndSpread, parameterValues, shownParameter } from "../words/paramet
 import { digits, parameterName } from "../words/quantity.js";
 import { Table } from "./table.js";
 
-/** @param {{ marginals: any[], line: any }} properties line: of the ledger, or of the point estimates */
+/**
+ * @param {{ marginals: Marginal[], line?: LedgerEntry | PointEstimate }} properties line: of the ledger, or of the
+ *   point estimates
+ */
 export function ParameterTable({ marginals, line }) {
   if (marginals.length === 0) {
-    const rows = Object.entries(line?.parameters ?? {}).map(([name, value]) => [
+    /** @type {Record<string, number | Schemas["ParameterSummary"]>} */
+    const estimates = line?.parameters ?? {};
+    const rows = Object.entries(estimates).map(([name, value]) => [
       parameterName(name, null),
-      digits(typeof value === "number" ? value : /** @type {any} */ (value).map, 4),
+      digits(typeof value === "number" ? value : value.map, 4),
     ]);
     return html`
       <${Table} label="Parameters" head=${[t`parameter (SI units)`, t`value of the fit`]} rows=${rows} numbers=${[1]} />
@@ -19,7 +24,8 @@ export function ParameterTable({ marginals, line }) {
   }
   const rows = marginals.map((m) => {
     const called = shownParameter(m);
-    const known = line?.parameters?.[m.name];
+    const summary = line?.parameters[m.name];
+    const known = typeof summary === "object" ? summary : null;
     const [low, high, mode] = parameterValues(called, [m.q05, m.q95, m.mode], m.mean, m.sd);
     return [
       called.name,
@@ -27,8 +33,10 @@ export function ParameterTable({ marginals, line }) {
       meanAndSpread(called, m.mean, m.sd),
       t`${low} to ${high}`,
       mode,
-      known ? meanAndSpread(called, known.prior_mean, known.prior_sd) : "–",
-      m.reference === null ? "–" : digits(called.of(m.reference), 4),
+      typeof known?.prior_mean === "number" && typeof known.prior_sd === "number"
+        ? meanAndSpread(called, known.prior_mean, known.prior_sd)
+        : "–",
+      typeof m.reference === "number" ? digits(called.of(m.reference), 4) : "–",
       html`
         ${called.isLogarithm && html`<code>${m.name}</code>`}${" "}
         ${known?.at_bound && html`<span class="state failed">at a bound of its prior</span>`}

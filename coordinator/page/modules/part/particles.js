@@ -12,7 +12,9 @@ import { Pending } from "./message.js";
 
 const FRAME_MS = 700;
 
-/** @param {{ id: number, stages: any[] }} properties */
+/** @typedef {{ x: number, y: number }} Point */
+
+/** @param {{ id: number, stages: Stage[] }} properties */
 export function Particles({ id, stages }) {
   const last = stages.length;
   const [asked, setStage] = useState(/** @type {number | null} */ (null));
@@ -32,8 +34,8 @@ export function Particles({ id, stages }) {
   };
   const parameters = parametersOf(answer ?? first.answer);
   const chosen = pair.map((k) => Math.min(k, Math.max(0, parameters.length - 1)));
-  const points = (/** @type {any} */ of) =>
-    (of?.samples ?? []).map((/** @type {any} */ s) => ({ x: s.theta[chosen[0]], y: s.theta[chosen[1]] }));
+  const points = (/** @type {Population | null} */ population) =>
+    (population?.samples ?? []).map((s) => ({ x: s.theta[chosen[0]], y: s.theta[chosen[1]] }));
   const now = useMemo(() => points(answer), [answer, ...chosen]);
   const early = useMemo(() => points(first.answer), [first.answer, ...chosen]);
   const exponent = stages[stage - 1]?.tempering_exponent;
@@ -42,7 +44,8 @@ export function Particles({ id, stages }) {
       ${end === 0 ? t`across` : t`up`}${" "}
       <select
         value=${chosen[end]}
-        onChange=${(/** @type {any} */ e) => setPair(pair.map((k, i) => (i === end ? Number(e.target.value) : k)))}
+        onChange=${(/** @type {SelectEvent} */ { currentTarget: { value } }) =>
+          setPair(pair.map((k, i) => (i === end ? Number(value) : k)))}
       >
         ${parameters.map(
           ({ name, unit }, k) =>
@@ -62,9 +65,9 @@ export function Particles({ id, stages }) {
           min="1"
           max=${last}
           value=${stage}
-          onInput=${(/** @type {any} */ e) => {
+          onInput=${(/** @type {FieldEvent} */ e) => {
             setPlaying(false);
-            setStage(Number(e.target.value));
+            setStage(Number(e.currentTarget.value));
           }}
         />
       </label>
@@ -88,13 +91,13 @@ export function RecordedParticles({ id }) {
   const populations = answer?.populations;
   if (!populations) return null;
   const { stages, parameters } = populations;
-  const of = (/** @type {any} */ population) => population.points.map((/** @type {number[]} */ [x, y]) => ({ x, y }));
+  const pointsOf = (/** @type {{ points: number[][] }} */ { points }) => points.map(([x, y]) => ({ x, y }));
   const shown = place ?? stages.length - 1;
   return html`
     <h2>Particles</h2>
     <div class="actions" role="group" aria-label="Stage">
       ${stages.map(
-        (/** @type {any} */ s, /** @type {number} */ k) =>
+        (s, k) =>
           html`
             <button type="button" aria-pressed=${k === shown} onClick=${() => setPlace(k)}>
               stage ${s.stage}: exponent ${digits(s.tempering_exponent, 2)}
@@ -102,7 +105,13 @@ export function RecordedParticles({ id }) {
           `,
       )}
     </div>
-    <${Cloud} id=${id} x=${parameters[0]} y=${parameters[1]} now=${of(stages[shown])} early=${of(stages[0])} />
+    <${Cloud}
+      id=${id}
+      x=${parameters[0]}
+      y=${parameters[1]}
+      now=${pointsOf(stages[shown])}
+      early=${pointsOf(stages[0])}
+    />
   `;
 }
 
@@ -114,12 +123,12 @@ const parametersOf = (population) =>
   (population?.parameters ?? []).map((name, k) => ({ name, unit: population?.units[k] ?? "1" }));
 
 /**
- * @param {{ id: number, x: { name: string, unit: string }, y: { name: string, unit: string }, now: any[], early: any[]
- *   }} properties
+ * @param {{ id: number, x: { name: string, unit: string }, y: { name: string, unit: string }, now: Point[], early:
+ *   Point[] }} properties
  */
 function Cloud({ id, x, y, now, early }) {
   const [across, up] = [x, y].map(shownParameter);
-  const at = { x: (/** @type {any} */ p) => across.of(p.x), y: (/** @type {any} */ p) => up.of(p.y) };
+  const at = { x: (/** @type {Point} */ p) => across.of(p.x), y: (/** @type {Point} */ p) => up.of(p.y) };
   const axis = (/** @type {import("../words/parameter.js").ShownParameter} */ { name, unit, isLogarithm }) => ({
     label: titled(name, unit),
     labelArrow: /** @type {const} */ ("none"),

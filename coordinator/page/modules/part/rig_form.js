@@ -131,7 +131,7 @@ export function RigForm({ runs, onFiles }) {
         size="8"
         inputmode="decimal"
         value=${typed[key] ?? ""}
-        onInput=${(/** @type {any} */ e) => setTyped({ ...typed, [key]: e.target.value })}
+        onInput=${(/** @type {FieldEvent} */ e) => setTyped({ ...typed, [key]: e.currentTarget.value })}
       />
     </label>
   `;

@@ -7,7 +7,7 @@ import { slipUnit } from "../units.js";
 import { digits, numberOf, shown, titled } from "../words/quantity.js";
 import { Table } from "./table.js";
 
-const USES = /** @type {[string, string][]} */ ([
+const USES = /** @type {[import("../run_choices.js").ChosenRun["use"], string][]} */ ([
   ["fit", t`fitted`],
   ["holdout", t`held out: never fitted`],
   ["excluded", t`excluded`],
@@ -29,7 +29,7 @@ export function RunChoices({ text, onText }) {
   const columns = SHOWN.filter(([name]) => file.header.includes(name));
   const cell = (/** @type {string} */ text, /** @type {number} */ scale) =>
     numberOf(text) === null ? text : digits(/** @type {number} */ (numberOf(text)) * scale);
-  const change = (/** @type {number} */ k, /** @type {any} */ to) =>
+  const change = (/** @type {number} */ k, /** @type {Partial<(typeof file.runs)[number]>} */ to) =>
     onText(write({ ...file, runs: file.runs.map((run, i) => (i === k ? { ...run, ...to } : run)) }));
   const count = (/** @type {string} */ use) => file.runs.filter((run) => run.use === use).length;
   const everyFourth = () =>
@@ -48,7 +48,8 @@ export function RunChoices({ text, onText }) {
           <select
             aria-label=${t`use of run ${run.run}`}
             value=${run.use}
-            onChange=${(/** @type {any} */ e) => change(k, { use: e.target.value })}
+            onChange=${(/** @type {SelectEvent} */ e) =>
+              change(k, { use: USES.find(([use]) => use === e.currentTarget.value)?.[0] ?? run.use })}
           >
             ${USES.map(([value, name]) => html`<option value=${value} selected=${value === run.use}>${name}</option>`)}
           </select>
@@ -60,14 +61,14 @@ export function RunChoices({ text, onText }) {
                 aria-label=${t`reason of run ${run.run}`}
                 placeholder="reason"
                 value=${run.reason}
-                onChange=${(/** @type {any} */ e) => change(k, { reason: e.target.value })}
+                onChange=${(/** @type {FieldEvent} */ e) => change(k, { reason: e.currentTarget.value })}
               />
             `,
         ...columns.map(([name, , { scale }]) => cell(run.cells[file.header.indexOf(name)] ?? "", scale)),
       ])
     : [];
   return html`
-    <details class="card" onToggle=${(/** @type {any} */ event) => setOpen(event.target.open)}>
+    <details class="card" onToggle=${(/** @type {DetailsEvent} */ event) => setOpen(event.currentTarget.open)}>
       <summary>Runs: ${count("fit")} fitted, ${count("holdout")} held out, ${count("excluded")} excluded</summary>
       <p class="note">
         Held-out runs are never fitted: they show how well the model predicts. An excluded run stays in the file as a

@@ -9,7 +9,7 @@ import { light, point, toggle } from "../selection.js";
 /** Number of rows on a page of the table; more cells take long to create. */
 const PAGE_ROWS = 120;
 
-/** @param {{ rows: any[] }} properties rows of a comparison */
+/** @param {{ rows: MeasuredRow[] }} properties rows of a comparison */
 export function RunTable({ rows }) {
   const [first, setFirst] = useState(0);
   const last = Math.min(first + PAGE_ROWS, rows.length);
@@ -54,13 +54,14 @@ export function RunTable({ rows }) {
 }
 
 /** The share of the final draws at which the model refuses a run, in front of what the others predict. */
-function refusal(/** @type {any} */ row) {
+function refusal(/** @type {MeasuredRow} */ row) {
   return row.refused ? `refused at ${digits((100 * row.refused.draws) / row.refused.of, 2)} % ` : "";
 }
 
-function RunRow(/** @type {{ row: any }} */ { row }) {
+function RunRow(/** @type {{ row: MeasuredRow }} */ { row }) {
   const quantity = shown(row.unit);
-  const value = (/** @type {number | null} */ v) => digits(v === null ? null : v * quantity.scale);
+  const value = (/** @type {number | null | undefined} */ v) =>
+    digits(typeof v === "number" ? v * quantity.scale : null);
   return html`
     <tr data-run=${row.run} onMouseEnter=${() => point([row.run])} onMouseLeave=${() => point(null)}>
       <th scope="row"><button class="plain" type="button" onClick=${() => toggle(row.run)}>${row.run}</button></th>
@@ -79,10 +80,10 @@ function RunRow(/** @type {{ row: any }} */ { row }) {
         }
       >
         ${refusal(row)}
-        ${row.refused && row.predicted === null ? "" : value(row.predicted)}
+        ${row.refused && typeof row.predicted !== "number" ? "" : value(row.predicted)}
       </td>
-      <td class="number">${row.q05 === null ? "–" : t`${value(row.q05)} to ${value(row.q95)}`}</td>
-      <td class="number">${row.residual_sigma === null ? "–" : minus(row.residual_sigma.toFixed(1))}</td>
+      <td class="number">${typeof row.q05 !== "number" ? "–" : t`${value(row.q05)} to ${value(row.q95)}`}</td>
+      <td class="number">${typeof row.residual_sigma !== "number" ? "–" : minus(row.residual_sigma.toFixed(1))}</td>
     </tr>
   `;
 }

@@ -11,13 +11,19 @@ export function Settings() {
     values.map((value) => /** @type {[string, string]} */ ([value, value]));
   return html`
     <div class="settings" role="group" aria-label="Language and units">
-      <select aria-label="Language" onChange=${(/** @type {any} */ e) => choose(e.target.value)}>
+      <select aria-label="Language" onChange=${(/** @type {SelectEvent} */ e) => choose(e.currentTarget.value)}>
         ${options(Object.entries(LANGUAGES), language)}
       </select>
-      <select aria-label="Units" onChange=${(/** @type {any} */ e) => chosenUnits.chooseSet(e.target.value)}>
+      <select
+        aria-label="Units"
+        onChange=${(/** @type {SelectEvent} */ e) => chosenUnits.chooseSet(e.currentTarget.value)}
+      >
         ${options(same(UNIT_SETS), chosenUnits.set)}
       </select>
-      <select aria-label="Slip as" onChange=${(/** @type {any} */ e) => chosenUnits.chooseSlip(e.target.value)}>
+      <select
+        aria-label="Slip as"
+        onChange=${(/** @type {SelectEvent} */ e) => chosenUnits.chooseSlip(e.currentTarget.value)}
+      >
         ${options(
           SLIPS.map((slip) => /** @type {[string, string]} */ ([slip, t`slip ${decimal(slip)}`])),
           chosenUnits.slip,

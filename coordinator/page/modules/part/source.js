@@ -2,7 +2,7 @@
 
 import { html } from "../html.js";
 
-/** @param {{ campaign: any }} properties */
+/** @param {{ campaign?: Study["campaign"] }} properties */
 export function Source({ campaign }) {
   if (!campaign) return null;
   return html`

@@ -6,14 +6,14 @@ import { html } from "../html.js";
 import { t } from "../language/language.js";
 import { digits } from "../words/quantity.js";
 
-const CURVES = [
+const CURVES = /** @type {const} */ ([
   { key: "tempering_exponent", title: t`tempering exponent`, note: t`1: the whole likelihood`, type: "log" },
   { key: "ess", title: t`effective samples`, note: t`after the weighting of a stage`, type: "linear" },
   { key: "acceptance", title: t`acceptance rate`, note: t`of the moves of a stage`, type: "linear" },
   { key: "evidence", title: t`ln evidence so far`, note: t`summed over the stages`, type: "linear" },
-];
+]);
 
-/** @param {{ stages: any[], name: string }} properties */
+/** @param {{ stages: Stage[], name: string }} properties */
 export function StageCharts({ stages, name }) {
   let evidence = 0;
   const rows = stages.map((stage) => ({ ...stage, evidence: (evidence += stage.log_evidence_increment) }));
@@ -42,7 +42,7 @@ export function StageCharts({ stages, name }) {
                 x: { label: t`stage`, labelArrow: "none", labelAnchor: "center", ticks, tickFormat: "d" },
                 y: {
                   label: null,
-                  type: /** @type {any} */ (type),
+                  type,
                   grid: type === "linear",
                   ticks: type === "log" && tens.length > 1 ? tens : 4,
                   zero: key === "acceptance",

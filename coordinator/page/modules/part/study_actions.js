@@ -1,5 +1,6 @@
 // What can be done with a study as a whole: begin again from its files, take it out of the list, delete it for good.
 
+import { errorOf } from "../rest/answers.js";
 import { fileName } from "../chart/figure.js";
 import { html, useState } from "../html.js";
 import { t } from "../language/language.js";
@@ -13,20 +14,24 @@ const files = () => import("../chart/download.js");
 const detailsForm = () => import("./details_form.js").then((module) => module.DetailsForm);
 const AT_WORK = ["queued", "running", "paused"];
 
-/** @param {{ study: any, reload: () => void }} properties */
+/** @param {{ study: Study, reload: () => void }} properties */
 export function StudyActions({ study, reload }) {
   const [isAsked, setAsked] = useState(false);
   const [isDescribed, setDescribed] = useState(false);
-  const [failure, setFailure] = useState(/** @type {any} */ (null));
-  const act = async (/** @type {() => Promise<any>} */ what, /** @type {() => void} */ then) => {
+  const [failure, setFailure] = useState(/** @type {Error | null} */ (null));
+  const act = async (/** @type {() => Promise<unknown>} */ what, /** @type {() => void} */ then) => {
     setFailure(null);
     setAsked(false);
     try {
       await what();
       then();
     } catch (error) {
-      setFailure(error);
+      setFailure(errorOf(error));
     }
+  };
+  const { current } = study;
+  const saveReport = async () => {
+    if (typeof current === "number") (await files()).save(`${fileName(study.name)}.html`, await reportOf(current));
   };
   const isAtWork = AT_WORK.includes(study.state);
   return html`
@@ -47,19 +52,8 @@ export function StudyActions({ study, reload }) {
         Name, author, tags, note
       </button>
       ${
-        study.current !== null &&
-        html`
-          <button
-            type="button"
-            onClick=${() =>
-              act(
-                async () => (await files()).save(`${fileName(study.name)}.html`, await reportOf(study.current)),
-                () => undefined,
-              )}
-          >
-            Save the report
-          </button>
-        `
+        typeof current === "number" &&
+        html`<button type="button" onClick=${() => act(saveReport, () => undefined)}>Save the report</button>`
       }
       <a class="button" href=${address(["new"], { study: study.id })}>Edit and start again</a>
       <${BesideAnother} study=${study} />
@@ -101,19 +95,17 @@ export function StudyActions({ study, reload }) {
 }
 
 /** Chooses another study to be shown beside this one; the list is asked for at the first touch. */
-function BesideAnother(/** @type {{ study: any }} */ { study }) {
+function BesideAnother(/** @type {{ study: Study }} */ { study }) {
   const [isTouched, setTouched] = useState(false);
   const { answer } = useAnswer(isTouched ? path.studies : null);
-  const others = (answer ?? []).filter((/** @type {any} */ other) => other.id !== study.id).reverse();
-  const go = (/** @type {any} */ event) =>
-    event.target.value && (location.hash = address(["beside", study.id, event.target.value]));
+  const others = (answer ?? []).filter((other) => other.id !== study.id).reverse();
+  const go = (/** @type {SelectEvent} */ { currentTarget: { value } }) =>
+    value && (location.hash = address(["beside", study.id, value]));
   return html`
     <label>
       Beside <select onFocus=${() => setTouched(true)} onPointerDown=${() => setTouched(true)} onChange=${go}>
         <option value="">another study</option>
-        ${others.map(
-          (/** @type {any} */ other) => html`<option value=${other.id}>${other.name} (study ${other.id})</option>`,
-        )}
+        ${others.map((other) => html`<option value=${other.id}>${other.name} (study ${other.id})</option>`)}
       </select>
     </label>
   `;

@@ -2,7 +2,7 @@
 
 import { html } from "../html.js";
 
-/** @param {{ study: any }} properties */
+/** @param {{ study: Study }} properties */
 export function SaidOfStudy({ study: { details } }) {
   const { author, tags, note } = details;
   return html`

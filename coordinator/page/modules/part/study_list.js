@@ -10,7 +10,7 @@ const FIRST = 50;
 /** Fewer studies need no search. */
 const LEAST = 4;
 
-/** @param {{ studies: any[] }} properties */
+/** @param {{ studies: ListedStudy[] }} properties */
 export function StudyList({ studies }) {
   const [text, setText] = useState("");
   const [order, setOrder] = useState(Object.keys(ORDERS)[0]);
@@ -28,11 +28,11 @@ export function StudyList({ studies }) {
               size="26"
               value=${text}
               placeholder="name, author, tag, effect"
-              onInput=${(/** @type {any} */ e) => setText(e.target.value)}
+              onInput=${(/** @type {FieldEvent} */ e) => setText(e.currentTarget.value)}
             />
           </label>
           <label>
-            Order <select value=${order} onChange=${(/** @type {any} */ e) => setOrder(e.target.value)}>
+            Order <select value=${order} onChange=${(/** @type {SelectEvent} */ e) => setOrder(e.currentTarget.value)}>
               ${Object.keys(ORDERS).map(
                 (name) => html`<option value=${name} selected=${name === order}>${name}</option>`,
               )}

@@ -9,17 +9,21 @@ import { progressWords } from "../words/state.js";
 import { Tags } from "./study_details.js";
 import { Table } from "./table.js";
 
-const USES = ["fit", "holdout"];
+const USES = /** @type {const} */ (["fit", "holdout"]);
 
 /** An error on fitted rows, above that on held-out rows; nothing for a channel without errors. */
-function pair(/** @type {any} */ error, /** @type {(use: any) => number | null | undefined} */ of, scale = 1) {
-  const uses = USES.filter((use) => error?.[use]);
-  const values = uses.map((use) => of(error[use]) ?? null);
+function pair(
+  /** @type {ListedStudy["error"]} */ error,
+  /** @type {(table: ErrorTable) => number | null | undefined} */ valueOf,
+  scale = 1,
+) {
+  const tables = USES.flatMap((use) => error?.[use] ?? []);
+  const values = tables.map((table) => valueOf(table) ?? null);
   if (values.every((value) => value === null)) return null;
   return html`${values.map((value) => html`<div>${errorWords(value === null ? null : value * scale)}</div>`)}`;
 }
 
-function State(/** @type {{ study: any }} */ { study }) {
+function State(/** @type {{ study: ListedStudy }} */ { study }) {
   return html`
     <span class=${`state ${study.state}`}>${translated(study.state)}</span>
     ${study.progress && html`<div class="note">${progressWords(study.progress)}</div>`}
@@ -27,7 +31,7 @@ function State(/** @type {{ study: any }} */ { study }) {
 }
 
 /** What the study found, and what it leaves open. */
-function foundBy(/** @type {any} */ study) {
+function foundBy(/** @type {ListedStudy} */ study) {
   if (study.failure)
     return html`
       <div class="found">
@@ -36,12 +40,12 @@ function foundBy(/** @type {any} */ study) {
       </div>
     `;
   const told = study.verdict?.short ?? study.models?.split(" (")[0];
-  const found = told ? clauses(told).map(said).join("; ") : study.state === "finished" ? t`no search yet` : "";
+  const text = told ? clauses(told).map(said).join("; ") : study.state === "finished" ? t`no search yet` : "";
   return (
-    found &&
+    text &&
     html`
       <div class="found">
-        ${capital(found)}
+        ${capital(text)}
         ${study.verdict?.open && html`<div class="note">${said(study.verdict.open)}</div>`}
       </div>
     `
@@ -49,14 +53,15 @@ function foundBy(/** @type {any} */ study) {
 }
 
 /** The day of the submission; its title has the time in the reader's format. */
-function Day(/** @type {{ ms: number | null }} */ { ms }) {
-  if (ms === null) return null;
+function Day(/** @type {{ ms?: number | null }} */ { ms }) {
+  if (ms === null || ms === undefined) return null;
   const day = new Date(ms).toISOString().slice(0, 10);
   return html`<time class="whole" datetime=${day} title=${new Date(ms).toLocaleString()}>${day}</time>`;
 }
 
 /**
- * @param {{ studies: any[], choose: (tag: string) => void }} properties studies: in the order in which they are shown
+ * @param {{ studies: ListedStudy[], choose: (tag: string) => void }} properties studies: in the order in which they are
+ *   shown
  */
 export function StudyTable({ studies, choose }) {
   const channels = CHANNELS.filter((channel) =>
@@ -86,16 +91,16 @@ export function StudyTable({ studies, choose }) {
     `,
     study.error &&
       html`
-        ${USES.filter((use) => study.error[use]).map(
+        ${USES.filter((use) => study.error?.[use]).map(
           (use) => html`<div class="whole">${use === "fit" ? t`fit` : t`held out`}</div>`,
         )}
       `,
     study.error
-      ? pair(study.error, (use) => use.all?.rmse_fixed_sigma)
+      ? pair(study.error, (table) => table.all.rmse_fixed_sigma)
       : study.state === "finished"
         ? html`<span class="note">being computed</span>`
         : null,
-    ...channels.map((channel) => pair(study.error, (use) => use[channel]?.rmse, shown(unitOf(channel)).scale)),
+    ...channels.map((channel) => pair(study.error, (table) => table[channel]?.rmse, shown(unitOf(channel)).scale)),
   ]);
   return html`
     <p class="note">

@@ -1,6 +1,7 @@
 // Takes back what was added to a study: the study is as before, and the same addition brings it again without being
 // computed anew.
 
+import { errorOf } from "../rest/answers.js";
 import { html, useState } from "../html.js";
 import { t } from "../language/language.js";
 import { withdraw } from "../rest/routes.js";
@@ -8,12 +9,12 @@ import { address } from "../route.js";
 import { Failure } from "./message.js";
 
 /**
- * @param {{ study: any, id: number, label?: string, reload?: () => void }} properties id: of the calibration that was
+ * @param {{ study: Study, id: number, label?: string, reload?: () => void }} properties id: of the calibration that was
  *   added
  */
 export function TakeBack({ study, id, label = t`Take back`, reload }) {
   const [isAsked, setAsked] = useState(false);
-  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [failure, setFailure] = useState(/** @type {Error | null} */ (null));
   const take = async () => {
     setFailure(null);
     setAsked(false);
@@ -22,7 +23,7 @@ export function TakeBack({ study, id, label = t`Take back`, reload }) {
       reload?.();
       location.hash = address(["studies", study.id, "story"]);
     } catch (error) {
-      setFailure(error);
+      setFailure(errorOf(error));
     }
   };
   return html`
@@ -42,13 +43,13 @@ export function TakeBack({ study, id, label = t`Take back`, reload }) {
 }
 
 /** The calibration that added an effect to a model; null where none did. */
-export function additionOf(/** @type {any} */ study, /** @type {string[]} */ effects) {
+export function additionOf(/** @type {Study} */ study, /** @type {string[]} */ effects) {
   const found = study.members.find(
-    (/** @type {any} */ m) => m.kind !== "search" && m.effects.length > 0 && m.effects.join(" ") === effects.join(" "),
+    (m) => m.kind !== "search" && m.effects.length > 0 && m.effects.join(" ") === effects.join(" "),
   );
   return found?.id ?? null;
 }
 
 /** Whether a model has something that the submitted one has not. */
-export const isAddition = (/** @type {any} */ study, /** @type {any} */ model) =>
+export const isAddition = (/** @type {Study} */ study, /** @type {Member} */ model) =>
   model.effects.length > 0 && study.members[0].id !== model.id;

@@ -5,7 +5,7 @@ import { t } from "../language/language.js";
 import { ago } from "../words/state.js";
 import { Table } from "./table.js";
 
-/** @param {{ workers: Record<string, any> }} properties by name */
+/** @param {{ workers: Record<string, FarmWorker> }} properties by name */
 export function WorkerTable({ workers }) {
   const rows = Object.entries(workers).map(([name, worker]) => [
     name,

@@ -17,6 +17,10 @@ export class AnswerError extends Error {
   }
 }
 
+/** What was thrown, as an error. */
+export const errorOf = (/** @type {unknown} */ thrown) =>
+  thrown instanceof Error ? thrown : new Error(String(thrown));
+
 /** The coordinator is away, or the network is. */
 export const unreachable = () =>
   new AnswerError(0, "unreachable", "the coordinator does not answer; the page goes on as soon as it does");
@@ -30,8 +34,13 @@ const carried = (() => {
 /** Whether this is a report, which can ask nobody. */
 export const isReport = carried !== null;
 
-/** An answer that a report carries; null on the page of a service. */
-export const recorded = (/** @type {string} */ path) => carried?.[path] ?? null;
+/**
+ * An answer that a report carries; null on the page of a service.
+ * @template Body
+ * @param {Path<Body>} path
+ * @returns {Body | null}
+ */
+export const recorded = (path) => carried?.[path] ?? null;
 
 /**
  * Asks the service, with the token of this browser.
@@ -81,8 +90,10 @@ async function body(/** @type {Response} */ response, /** @type {AbortSignal | u
 
 /**
  * The answer to a GET request.
- * @param {string} path
+ * @template Body
+ * @param {Path<Body>} path
  * @param {AbortSignal} [signal]
+ * @returns {Promise<Body>}
  */
 export async function get(path, signal) {
   if (carried) {

@@ -22,9 +22,10 @@ export function split(/** @type {string} */ text) {
 
 /**
  * Follows a stream until its calibration is over; EventSource sends no token, so the stream is fetched.
- * @param {string} path
- * @param {{ onEvent: (event: string, data: any) => void, onError: (error: any) => void, isOver: (event: string, data:
- *   any) => boolean }} listeners onError: null where the stream is open again
+ * @template {[name: string, data: unknown]} Events
+ * @param {Path<unknown>} path
+ * @param {{ onEvent: (...event: Events) => void, onError: (error: Error | null) => void,
+ *   isOver: (...event: Events) => boolean }} listeners onError: null where the stream is open again
  * @returns {() => void} ends it
  */
 export function follow(path, { onEvent, onError, isOver }) {
@@ -42,8 +43,9 @@ export function follow(path, { onEvent, onError, isOver }) {
       const found = split(rest + decoder.decode(value, { stream: true }));
       rest = found.rest;
       for (const { event, data } of found.events) {
-        onEvent(event, data);
-        isEnded ||= isOver(event, data);
+        const told = /** @type {Events} */ ([event, data]);
+        onEvent(...told);
+        isEnded ||= isOver(...told);
       }
     }
   };
@@ -53,8 +55,9 @@ export function follow(path, { onEvent, onError, isOver }) {
     } catch (error) {
       if (abort.signal.aborted) return;
       // A stream that breaks off while it is read fails in the words of the browser.
-      onError(error instanceof AnswerError ? error : unreachable());
-      isEnded ||= [403, 404].includes(/** @type {any} */ (error).status);
+      const failure = error instanceof AnswerError ? error : unreachable();
+      onError(failure);
+      isEnded ||= [403, 404].includes(failure.status);
     }
     if (!isEnded && !abort.signal.aborted) setTimeout(loop, AGAIN_MS);
   };

@@ -2,12 +2,10 @@
 
 import { get, post, remove, request } from "./answers.js";
 
-/** @typedef {import("../../types/api").components["schemas"]} Schemas */
-
 const study = (/** @type {number} */ id) => `/v1/studies/${id}`;
 const calibration = (/** @type {number} */ id) => `/v1/calibrations/${id}`;
 
-export const path = {
+export const path = /** @type {Paths} */ ({
   studies: "/v1/studies",
   allStudies: "/v1/studies?archived=true",
   workers: "/v1/workers",
@@ -29,9 +27,10 @@ export const path = {
   discovery: (/** @type {number} */ id) => `${calibration(id)}/discovery`,
   stages: (/** @type {number} */ id) => `${calibration(id)}/stages`,
   events: (/** @type {number} */ id) => `${calibration(id)}/events`,
-  samples: (/** @type {number} */ id, /** @type {number} */ stage, most = 1000) =>
-    `${calibration(id)}/samples?stage=${stage}&most=${most}`,
-};
+  posterior: (/** @type {number} */ id) => `${calibration(id)}/posterior`,
+  samples: (/** @type {number} */ id, /** @type {number} */ stage, max = 1000) =>
+    `${calibration(id)}/samples?stage=${stage}&most=${max}`,
+});
 
 export { get };
 
@@ -97,7 +96,7 @@ export const submit = (/** @type {Schemas["NewCalibration"]} */ job) => post("/v
  * @returns {Promise<{ name: string, files: Record<string, string> }>}
  */
 export async function filesOfStudy(/** @type {string} */ id) {
-  const { name, calibrations } = await get(study(Number(id)));
+  const { name, calibrations } = await get(path.study(Number(id)));
   const job = await get(path.job(calibrations[0]));
   const experiment = await get(path.experiment(job.experiment));
   return {

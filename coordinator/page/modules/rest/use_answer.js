@@ -2,7 +2,7 @@
 // again.
 
 import { useCallback, useEffect, useRef, useState } from "../html.js";
-import { get } from "./answers.js";
+import { AnswerError, errorOf, get } from "./answers.js";
 import { token } from "./token.js";
 
 /** Pause before the next request after a failed one, as while the coordinator restarts [ms]. */
@@ -13,17 +13,24 @@ const isPassing = (/** @type {number} */ status) => status === 0 || status === 4
 
 /**
  * The answer of a path.
- * @template [T=any]
- * @param {string | null} path null: nothing is asked
- * @param {{ everyMs?: (answer: any) => number | null }} [options] how long after an answer it is asked again [ms]
- * @returns {{ answer: T | null, error: any, reload: () => void }} error: of the last look, null where it succeeded
+ * @template Body
+ * @param {Path<Body> | null} path null: nothing is asked
+ * @param {{ everyMs?: (answer: Body) => number | null }} [options] how long after an answer it is asked again [ms]
+ * @returns {{ answer: Body | null, error: Error | null, reload: () => void }} error: of the last look, null where it
+ *   succeeded
  */
 export function useAnswer(path, { everyMs = () => null } = {}) {
-  const [state, setState] = useState(/** @type {any} */ ({ path: null, answer: null, error: null }));
+  const [state, setState] = useState(
+    /** @type {{ path: string | null, answer: Body | null, error: Error | null }} */ ({
+      path: null,
+      answer: null,
+      error: null,
+    }),
+  );
   const [round, setRound] = useState(0);
   const period = useRef(everyMs);
   period.current = everyMs;
-  const reload = useCallback(() => setRound((/** @type {number} */ n) => n + 1), []);
+  const reload = useCallback(() => setRound((n) => n + 1), []);
   useEffect(() => token.watch(reload), [reload]);
   useEffect(() => {
     if (path === null) return undefined;
@@ -37,10 +44,11 @@ export function useAnswer(path, { everyMs = () => null } = {}) {
         if (abort.signal.aborted) return;
         pauseMs = period.current(answer);
         setState({ path, answer, error: null });
-      } catch (error) {
+      } catch (thrown) {
         if (abort.signal.aborted) return;
-        setState((/** @type {any} */ before) => ({ path, answer: before.path === path ? before.answer : null, error }));
-        pauseMs = isPassing(/** @type {any} */ (error).status) ? RETRY_MS : null;
+        const error = errorOf(thrown);
+        setState((before) => ({ path, answer: before.path === path ? before.answer : null, error }));
+        pauseMs = error instanceof AnswerError && isPassing(error.status) ? RETRY_MS : null;
       }
       if (pauseMs !== null) timer = setTimeout(look, pauseMs);
     };
@@ -55,16 +63,17 @@ export function useAnswer(path, { everyMs = () => null } = {}) {
 
 /**
  * The answers of several paths; those that are not there yet are missing.
- * @param {string[]} paths
- * @returns {Record<string, any>}
+ * @template Body
+ * @param {Path<Body>[]} paths
+ * @returns {Record<string, Body>}
  */
 export function useAnswers(paths) {
-  const [answers, setAnswers] = useState(/** @type {Record<string, any>} */ ({}));
+  const [answers, setAnswers] = useState(/** @type {Record<string, Body>} */ ({}));
   useEffect(() => {
     const abort = new AbortController();
     for (const path of paths.filter((p) => !(p in answers))) {
       get(path, abort.signal).then(
-        (answer) => setAnswers((/** @type {Record<string, any>} */ before) => ({ ...before, [path]: answer })),
+        (answer) => setAnswers((before) => ({ ...before, [path]: answer })),
         // A layer that is not there is not drawn; its own view says why.
         () => undefined,
       );

@@ -12,26 +12,28 @@ import { address } from "../route.js";
 import { isOneCampaign, rowsBeside } from "../words/beside.js";
 
 const LOOK_MS = 1000;
-const isOver = (/** @type {any} */ study) => ["finished", "failed", "cancelled"].includes(study.state);
+const isOver = (/** @type {Study} */ study) => ["finished", "failed", "cancelled"].includes(study.state);
 
 /** @param {{ ids: number[] }} properties ids: of two studies */
 export function Beside({ ids }) {
   const [key, setKey] = useState("slip");
   const answers = [useSide(ids[0]), useSide(ids[1])];
   const current = answers.map(({ answer }) => answer?.current ?? null);
-  const files = useAnswers(current.flatMap((id) => (id === null ? [] : [path.comparison(id), path.diagnostics(id)])));
+  const known = current.filter((id) => id !== null);
+  const compared = useAnswers(known.map(path.comparison));
+  const diagnosed = useAnswers(known.map(path.diagnostics));
   const missing = answers.findIndex(({ answer }) => !answer);
   if (missing >= 0)
     return html`<${Pending} answer=${null} error=${answers[missing].error} what=${t`study ${ids[missing]}`} />`;
-  const sides = answers.map(({ answer: study }, k) => ({
-    study,
-    line: study.ledger.find((/** @type {any} */ line) => line.calibration === current[k]) ?? null,
-    diagnostics: files[path.diagnostics(current[k] ?? 0)] ?? null,
-  }));
+  const sides = answers.flatMap(({ answer: study }, k) => {
+    if (!study) return [];
+    const line = study.ledger.find(({ calibration }) => calibration === current[k]);
+    return [{ study, line, diagnostics: diagnosed[path.diagnostics(current[k] ?? 0)] ?? null }];
+  });
   const names = sides.map(({ study }) =>
     sides[0].study.name === sides[1].study.name ? t`${study.name} (study ${study.id})` : study.name,
   );
-  const comparisons = current.map((id) => (id === null ? null : (files[path.comparison(id)]?.rows ?? null)));
+  const comparisons = current.map((id) => (id === null ? null : (compared[path.comparison(id)]?.rows ?? null)));
   const [a, b] = comparisons;
   // Runs of two campaigns are no points of one picture.
   const isOne = a && b && isOneCampaign(a, b);
@@ -40,7 +42,7 @@ export function Beside({ ids }) {
   );
   const pictures = isOne ? [all] : all.map((layer) => [layer]);
   const axes = all.length > 0 ? varying(all.flatMap((layer) => layer.rows)) : [];
-  const axis = axes.find((one) => one.key === key) ?? axes[0];
+  const axis = axes.find((condition) => condition.key === key) ?? axes[0];
   const link = (/** @type {number} */ k) =>
     html`<a href=${address(["studies", ids[k], isOver(sides[k].study) ? "story" : "live"])}>${names[k]}</a>`;
   return html`
@@ -92,4 +94,4 @@ export function Beside({ ids }) {
 
 /** A study, looked at while it is at work. */
 const useSide = (/** @type {number} */ id) =>
-  useAnswer(path.study(id), { everyMs: (/** @type {any} */ study) => (isOver(study) ? 10 * LOOK_MS : LOOK_MS) });
+  useAnswer(path.study(id), { everyMs: (study) => (isOver(study) ? 10 * LOOK_MS : LOOK_MS) });

@@ -14,7 +14,7 @@ import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address, replace } from "../route.js";
 
-/** @param {{ study: any, model: any, query: Record<string, string> }} properties */
+/** @param {{ study: Study, model: Member, query: Record<string, string> }} properties */
 export function Compare({ study, model, query }) {
   const { answer: comparison, error } = useAnswer(model ? path.comparison(model.id) : null);
   const { answer: histories } = useAnswer(model ? path.histories(model.id) : null);
@@ -38,18 +38,17 @@ export function Compare({ study, model, query }) {
     <${ChannelCharts} layers=${layers} axis=${axis} name=${study.name} />
     <${ParameterFold}
       model=${model}
-      line=${study.ledger.find((/** @type {any} */ l) => l.calibration === model.id)}
+      line=${study.ledger.find((l) => l.calibration === model.id)}
       rows=${comparison.rows}
       axis=${axis}
       name=${study.name}
     />
     ${
-      histories?.length > 0 &&
+      histories &&
+      histories.length > 0 &&
       html`
         <h2>Time histories</h2>
-        <div class="figures">
-          ${histories.map((/** @type {any} */ h) => html`<${HistoryChart} history=${h} name=${study.name} />`)}
-        </div>
+        <div class="figures">${histories.map((h) => html`<${HistoryChart} history=${h} name=${study.name} />`)}</div>
       `
     }
     <${Folded} title="Table of all runs"><${RunTable} rows=${comparison.rows} /><//>
@@ -57,10 +56,10 @@ export function Compare({ study, model, query }) {
 }
 
 /** A part that is made when it is opened first: the table of a thousand runs has ten thousand cells. */
-function Folded(/** @type {{ title: string, children?: any }} */ { title, children }) {
+function Folded(/** @type {{ title: string, children?: unknown }} */ { title, children }) {
   const [isOpen, setOpen] = useState(false);
   return html`
-    <details onToggle=${(/** @type {any} */ event) => event.target.open && setOpen(true)}>
+    <details onToggle=${(/** @type {DetailsEvent} */ event) => event.currentTarget.open && setOpen(true)}>
       <summary>${title}</summary>
       ${isOpen && children}
     </details>

@@ -13,11 +13,11 @@ import { loadWords, speedWords } from "../words/condition.js";
 import { loss, lossWithError, percent, significant, slipDigits } from "../words/decision.js";
 import { capital, digits } from "../words/quantity.js";
 
-/** @typedef {import("../../types/api").components["schemas"]["DecisionAnswer"]} Decision */
+/** @typedef {Schemas["DecisionAnswer"]} Decision */
 
-/** @param {{ study: any, model: any }} properties */
+/** @param {{ study: Study, model: Member }} properties */
 export function Decide({ study, model }) {
-  const [known, setKnown] = useState(/** @type {{ decision: Decision | null, error: any } | null} */ (null));
+  const [known, setKnown] = useState(/** @type {{ decision: Decision | null, error: Error | null } | null} */ (null));
   useEffect(() => {
     if (!model) return;
     get(path.decision(model.id)).then(

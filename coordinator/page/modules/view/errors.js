@@ -12,18 +12,16 @@ import { ledgerLines } from "../chart/ledger_lines.js";
 import { path } from "../rest/routes.js";
 import { useAnswers } from "../rest/use_answer.js";
 
-/** @param {{ study: any }} properties */
+/** @param {{ study: Study }} properties */
 export function Errors({ study }) {
   const [hidden, setHidden] = useState(/** @type {number[]} */ ([]));
   const [key, setKey] = useState("slip");
   const lines = ledgerLines(study);
   // Models that the job compares are layers, too; the ledger has the chosen one and what it grew into.
-  const compared = (study.models?.models ?? []).filter(
-    (/** @type {any} */ m) => !lines.some((line) => line.id === m.calibration),
-  );
+  const compared = (study.models?.models ?? []).filter((m) => !lines.some((line) => line.id === m.calibration));
   const all = [
     ...lines,
-    ...compared.map((/** @type {any} */ m, /** @type {number} */ k) => ({
+    ...compared.map((m, k) => ({
       id: m.calibration,
       name: m.name,
       colour: colour(lines.length + k),

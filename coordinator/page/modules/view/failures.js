@@ -19,6 +19,9 @@ import { said } from "../words/clauses.js";
 import { capital, CHANNELS, minus, short } from "../words/quantity.js";
 import { hasErrorsBesideNoise, hasOnlyNoise, residualSds } from "../words/residual.js";
 
+/** @typedef {ConditionKey | "made" | "size"} Order */
+/** @typedef {PlacedRow & { sds: number, all_sds: number | null }} JudgedRow */
+
 /** Number of sds beyond which residuals have one colour. */
 const MOST_SDS = 4;
 /** Number of colour steps per sd in a picture of many cells. */
@@ -30,11 +33,11 @@ const LEAST_CELL = 14;
 /** Height of one character of a slanted name below the axis [px]. */
 const CHARACTER = 5.2;
 
-/** @param {{ study: any, model: any, query: Record<string, string> }} properties */
+/** @param {{ study: Study, model: Member, query: Record<string, string> }} properties */
 export function Failures({ study, model }) {
   const { answer: comparison, error } = useAnswer(model ? path.comparison(model.id) : null);
   const { answer: diagnostics } = useAnswer(model ? path.diagnostics(model.id) : null);
-  const [order, setOrder] = useState("slip");
+  const [order, setOrder] = useState(/** @type {Order} */ ("slip"));
   const [errors, setErrors] = useState(/** @type {"all" | "noise"} */ ("all"));
   const rows = useMemo(() => withPlace(comparison?.rows ?? []), [comparison]);
   const ofChannel = useMemo(
@@ -47,6 +50,7 @@ export function Failures({ study, model }) {
   if (!model) return html`<${NoModel} study=${study} />`;
   if (!comparison) return html`<${Pending} answer=${comparison} error=${error} what="the residuals" />`;
   const axes = varying(comparison.rows);
+  /** @type {{ key: Order, title: string }[]} */
   const orders = [
     ...axes.map((a) => ({ key: a.key, title: a.title })),
     { key: "made", title: t`order of the runs` },
@@ -126,48 +130,45 @@ const ERRORS = [
 const MADE = { key: "place", title: t`order of the runs`, short: t`runs`, unit: "1", scale: 1 };
 
 /** Rows with the place of their run. */
-function withPlace(/** @type {any[]} */ rows) {
+function withPlace(/** @type {MeasuredRow[]} */ rows) {
   const places = new Map([...new Set(rows.map((r) => r.run))].map((run, k) => [run, k + 1]));
-  return rows.map((r) => ({ ...r, place: places.get(r.run) }));
+  return rows.map((r) => ({ ...r, place: places.get(r.run) ?? 0 }));
 }
 
 /**
  * Runs by channels, coloured by the residual over its sd.
- * @param {{ rows: any[], order: string, errors: "all" | "noise", named: "all" | "noise",
+ * @param {{ rows: PlacedRow[], order: Order, errors: "all" | "noise", named: "all" | "noise",
  *   name: string }} properties
  */
 function HeatMap({ rows, order, errors, named, name }) {
-  const judged = rows
-    .map((r) => ({ ...r, sds: residualSds(r, errors), all_sds: residualSds(r, "all") }))
-    .filter((r) => r.sds !== null);
+  const judged = rows.flatMap((r) => {
+    const sds = residualSds(r, errors);
+    return sds === null ? [] : [{ ...r, sds, all_sds: residualSds(r, "all") }];
+  });
   /** @type {Map<string, number>} */
   const worst = new Map();
   for (const r of judged) worst.set(r.run, Math.max(worst.get(r.run) ?? 0, Math.abs(r.sds)));
-  const first = new Map(rows.map((r) => [r.run, r]));
-  const runs = [...new Set(judged.map((r) => r.run))];
+  const value = (/** @type {PlacedRow} */ row) =>
+    order === "size" ? -(worst.get(row.run) ?? 0) : row[order === "made" ? "place" : order];
   const channels = CHANNELS.filter((c) => judged.some((r) => r.channel === c));
-  const value = (/** @type {string} */ run) =>
-    order === "size" ? -(worst.get(run) ?? 0) : order === "made" ? first.get(run).place : first.get(run)[order];
-  const values = new Map(runs.map((run) => [run, value(run)]));
-  runs.sort((a, b) => values.get(a) - values.get(b) || first.get(a).place - first.get(b).place);
-  const hint = (/** @type {any} */ r) =>
+  const firstRows = [...new Map(judged.map((r) => [r.run, r])).values()];
+  firstRows.sort((a, b) => value(a) - value(b) || a.place - b.place);
+  const runs = firstRows.map((row) => row.run);
+  const hint = (/** @type {JudgedRow} */ r) =>
     [runName(r), short(r.channel)].join(", ") +
     `\n${conditionWords(r)}\n` +
     (r.sds > 0
-      ? t`${minus(r.all_sds.toFixed(1))} sds of all errors, ${minus(r.residual_sigma.toFixed(1))} of the noise alone:
-        measured above computed`
-      : t`${minus(r.all_sds.toFixed(1))} sds of all errors, ${minus(r.residual_sigma.toFixed(1))} of the noise alone:
-        measured below computed`);
+      ? t`${inSds(r.all_sds)} sds of all errors, ${inSds(r.residual_sigma)} of the noise alone: measured above
+        computed`
+      : t`${inSds(r.all_sds)} sds of all errors, ${inSds(r.residual_sigma)} of the noise alone: measured below
+        computed`);
   const isMany = judged.length > MANY;
   // A dot above the cells of a run: on a cell it would hide the colour.
-  const held = runs
-    .map((run) => first.get(run))
-    .filter((r) => r.use === "holdout")
-    .map((r) => ({ ...r, channel: channels[0] }));
+  const held = firstRows.filter((r) => r.use === "holdout").map((r) => ({ ...r, channel: channels[0] }));
   const heldLook = { x: "run", y: "channel", dy: -CELL / 2 - 4, fill: "var(--ink)", className: "held" };
   // In a picture of many cells, all cells of one colour step are one element.
   const fill = isMany
-    ? (/** @type {any} */ r) => Math.round(STEPS * Math.max(-MOST_SDS, Math.min(MOST_SDS, r.sds))) / STEPS
+    ? (/** @type {JudgedRow} */ r) => Math.round(STEPS * Math.max(-MOST_SDS, Math.min(MOST_SDS, r.sds))) / STEPS
     : "sds";
   const isNamed = (/** @type {number} */ width) => (width - 112) / runs.length >= LEAST_CELL;
   const below = (/** @type {number} */ width) =>
@@ -190,9 +191,8 @@ function HeatMap({ rows, order, errors, named, name }) {
       color: {
         type: "linear",
         domain: [-MOST_SDS, 0, MOST_SDS],
-        range: RESIDUAL_RANGE,
         clamp: true,
-        interpolate: /** @type {any} */ (mix),
+        interpolate: mix,
       },
       marks: [
         Plot.cell(judged, byRun(judged, { x: "run", y: "channel", fill, inset: runs.length > 200 ? 0 : 0.5 }, isMany)),
@@ -203,7 +203,7 @@ function HeatMap({ rows, order, errors, named, name }) {
           Plot.pointer({
             x: "run",
             y: "channel",
-            title: (/** @type {any} */ r) => r,
+            title: (/** @type {JudgedRow} */ r) => r,
             format: { title: hint },
             fill: "var(--panel)",
             stroke: "var(--rule)",
@@ -232,7 +232,7 @@ function HeatMap({ rows, order, errors, named, name }) {
           residual_sds: r.all_sds,
           residual_noise_sds: r.residual_sigma,
         }))}
-      onDrawn=${(/** @type {any} */ plot) => pointable(plot)}
+      onDrawn=${(/** @type {Picture} */ plot) => pointable(plot)}
       legend=${html`
         <span><i class="swatch below"></i>computed too high by ${MOST_SDS} sds or more</span>
         <span><i class="swatch level"></i>as measured</span>
@@ -243,7 +243,13 @@ function HeatMap({ rows, order, errors, named, name }) {
   `;
 }
 
-/** Mixes two colours of the style sheet. */
-function mix(/** @type {string} */ from, /** @type {string} */ to) {
-  return (/** @type {number} */ share) => `color-mix(in srgb, ${to} ${(100 * share).toFixed(1)}%, ${from})`;
+/** A residual over an sd; a dash where it is not known. */
+const inSds = (/** @type {number | null | undefined} */ value) =>
+  typeof value === "number" ? minus(value.toFixed(1)) : "–";
+
+/** The colour of a share of the scale: mixed from neighbouring colours of the style sheet. */
+function mix(/** @type {number} */ share) {
+  const [below, level, above] = RESIDUAL_RANGE;
+  const [from, to, part] = share < 0.5 ? [below, level, 2 * share] : [level, above, 2 * share - 1];
+  return `color-mix(in srgb, ${to} ${(100 * part).toFixed(1)}%, ${from})`;
 }

@@ -10,7 +10,8 @@ import { useAnswer } from "../rest/use_answer.js";
 const LOOK_MS = 2000;
 /** The same while nothing is at work: somebody may submit a study elsewhere. */
 const REST_MS = 10000;
-const isAtWork = (/** @type {any[]} */ studies) => studies.some(({ state }) => ["queued", "running"].includes(state));
+const isAtWork = (/** @type {ListedStudy[]} */ studies) =>
+  studies.some(({ state }) => ["queued", "running"].includes(state));
 
 export function Home() {
   const [isArchive, setArchive] = useState(false);
@@ -33,7 +34,7 @@ export function Home() {
         <input
           type="checkbox"
           checked=${isArchive}
-          onChange=${(/** @type {any} */ e) => setArchive(e.target.checked)}
+          onChange=${(/** @type {FieldEvent} */ e) => setArchive(e.currentTarget.checked)}
         /> archived
         studies, too
       </label>
@@ -47,7 +48,7 @@ export function Home() {
   `;
 }
 
-function Studies(/** @type {{ studies: any[] }} */ { studies }) {
+function Studies(/** @type {{ studies: ListedStudy[] }} */ { studies }) {
   if (studies.length > 0) return html`<${StudyList} studies=${studies} />`;
   return html`
     <div class="card">
@@ -64,7 +65,7 @@ function Studies(/** @type {{ studies: any[] }} */ { studies }) {
   `;
 }
 
-function Workers(/** @type {{ workers: Record<string, any> }} */ { workers }) {
+function Workers(/** @type {{ workers: Record<string, FarmWorker> }} */ { workers }) {
   if (Object.keys(workers).length > 0) return html`<${WorkerTable} workers=${workers} />`;
   return html`
     <${Empty}>

@@ -17,6 +17,7 @@ import { follow } from "../rest/events.js";
 import { path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address, replace } from "../route.js";
+import { followable } from "../words/model.js";
 import { words } from "../words/quantity.js";
 import { toGo } from "../words/time_to_go.js";
 import { progressWords } from "../words/state.js";
@@ -31,29 +32,28 @@ const FINAL = ["finished", "failed", "cancelled"];
 const KINDS = { sample: t`calibration`, fit: t`fit`, search: t`search for a missing effect` };
 
 /** The member that is shown: the one that the address names, or the one that works, or the last calibration. */
-function memberOf(/** @type {any} */ study, /** @type {string | undefined} */ asked) {
-  const of = (/** @type {(m: any) => boolean} */ test) => study.members.findLast(test);
+function memberOf(/** @type {Study} */ study, /** @type {string | undefined} */ asked) {
+  const lastWhere = (/** @type {(member: Member) => boolean} */ test) => study.members.findLast(test);
   return (
-    of((m) => String(m.id) === asked) ??
-    of((m) => m.state === "running") ??
-    of((m) => ["paused", "queued"].includes(m.state)) ??
-    of((m) => m.kind !== "search") ??
+    lastWhere((m) => String(m.id) === asked) ??
+    lastWhere((m) => m.state === "running") ??
+    lastWhere((m) => ["paused", "queued"].includes(m.state)) ??
+    lastWhere((m) => m.kind !== "search") ??
     study.members.at(-1)
   );
 }
 
-/** @param {{ study: any, model: any, query: Record<string, string>, reload: () => void }} properties */
+/** @param {{ study: Study, model: Member, query: Record<string, string>, reload: () => void }} properties */
 export function Live({ study, model, query, reload }) {
   const member = memberOf(study, query.member ?? (isReport ? String(model?.id) : undefined));
   if (!member) return html`<p class="empty">This study has no calibration.</p>`;
-  // A search and a fit have no posterior that further runs could change.
-  const followable = member.kind === "sample" && member.state === "finished" ? member : model;
+  const campaignModel = followable(member, model);
   const go = (/** @type {number} */ id) => replace(address(["studies", study.id, "live"], { member: id }));
-  const names = study.members.map((/** @type {any} */ m) => [
+  const names = study.members.map((m) => [
     isReport
       ? m.name
       : html`<button type="button" aria-pressed=${m.id === member.id} onClick=${() => go(m.id)}>${m.name}</button>`,
-    KINDS[/** @type {keyof typeof KINDS} */ (m.kind)] ?? words(m.kind),
+    KINDS[m.kind] ?? words(m.kind),
     html`<span class=${`state ${m.state}`}>${translated(m.state)}</span>`,
     m.message ?? "",
   ]);
@@ -81,14 +81,14 @@ export function Live({ study, model, query, reload }) {
     ${
       !isReport &&
       FINAL.includes(study.state) &&
-      followable &&
+      campaignModel &&
       html`
         <${Later}
-          key=${`campaign ${followable.id}`}
+          key=${`campaign ${campaignModel.id}`}
           title=${t`The campaign`}
           load=${campaign}
           study=${study}
-          model=${followable}
+          model=${campaignModel}
           reload=${reload}
         />
       `
@@ -118,26 +118,28 @@ function Farm() {
   );
 }
 
-function Member(/** @type {{ member: any, reload: () => void }} */ { member, reload }) {
+function Member(/** @type {{ member: Member, reload: () => void }} */ { member, reload }) {
   const isOver = FINAL.includes(member.state);
   const recorded = useAnswer(isOver ? path.stages(member.id) : null);
-  const [status, setStatus] = useState(/** @type {any} */ (null));
-  const [live, setLive] = useState(/** @type {any[]} */ ([]));
-  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [status, setStatus] = useState(/** @type {CalibrationStatus | null} */ (null));
+  const [live, setLive] = useState(/** @type {Stage[]} */ ([]));
+  const [failure, setFailure] = useState(/** @type {Error | null} */ (null));
   useEffect(() => {
     if (isReport || isOver) return undefined;
-    return follow(path.events(member.id), {
+    /** @type {Parameters<typeof follow<CalibrationEvent>>[1]} */
+    const listeners = {
       onEvent(event, data) {
         if (event === "status") setStatus(data);
         // A stream that is opened again begins with the first stage.
         else
-          setLive((/** @type {any[]} */ before) =>
+          setLive((before) =>
             [...before.filter((s) => s.stage !== data.stage), data].sort((a, b) => a.stage - b.stage),
           );
       },
       onError: setFailure,
       isOver: (event, data) => event === "status" && FINAL.includes(data.state),
-    });
+    };
+    return follow(path.events(member.id), listeners);
   }, [member.id, isOver]);
   const stages = recorded.answer ?? live;
   const isLoading = isOver && recorded.answer === null;
@@ -171,7 +173,7 @@ function Member(/** @type {{ member: any, reload: () => void }} */ { member, rel
           </label>
           ${
             share < MOST_SHARE &&
-            progress.remaining_s === null &&
+            typeof progress?.remaining_s !== "number" &&
             seen.current &&
             html`
               ${" "}
@@ -221,7 +223,7 @@ const percentage = (/** @type {number} */ done, /** @type {number} */ size) =>
   `${size > 0 ? Math.round((100 * done) / size) : 0} %`;
 
 /** Why a calibration shows no stages. */
-function noStages(/** @type {any} */ member, /** @type {boolean} */ isOver, /** @type {boolean} */ isLoading) {
+function noStages(/** @type {Member} */ member, /** @type {boolean} */ isOver, /** @type {boolean} */ isLoading) {
   if (isLoading) return t`Loading the stages …`;
   if (member.kind === "fit")
     return isOver

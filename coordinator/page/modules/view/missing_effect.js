@@ -13,7 +13,7 @@ import { Failure, Pending } from "../part/message.js";
 import { NewRuns } from "../part/new_runs.js";
 import { NoModel } from "../part/no_model.js";
 import { NotTried } from "../part/not_tried.js";
-import { isReport } from "../rest/answers.js";
+import { errorOf, isReport } from "../rest/answers.js";
 import { discover, extend, path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address, replace } from "../route.js";
@@ -22,21 +22,21 @@ import { byChange, withGhost, withoutChange } from "../words/ghost.js";
 import { capital } from "../words/quantity.js";
 
 /**
- * @param {{ study: any, model: any, query: Record<string, string>, reload?: () => void }} properties query.effect:
+ * @param {{ study: Study, model: Member, query: Record<string, string>, reload?: () => void }} properties query.effect:
  *   whose curves are kept over the data
  */
 export function MissingEffect({ study, model, query, reload }) {
-  const searches = study.members.filter((/** @type {any} */ m) => m.kind === "search" && m.searches === model?.id);
-  const search = searches.findLast((/** @type {any} */ m) => m.state === "finished") ?? searches.at(-1);
+  const searches = study.members.filter((m) => m.kind === "search" && m.searches === model?.id);
+  const search = searches.findLast((m) => m.state === "finished") ?? searches.at(-1);
   const isFound = search?.state === "finished";
-  const isLost = ["failed", "cancelled"].includes(search?.state);
-  const { answer: record, error } = useAnswer(isFound ? path.discovery(search.id) : null);
+  const isLost = search?.state === "failed" || search?.state === "cancelled";
+  const { answer: record, error } = useAnswer(search && isFound ? path.discovery(search.id) : null);
   const { answer: comparison } = useAnswer(model ? path.comparison(model.id) : null);
   const [pointed, setPointed] = useState(/** @type {string | null} */ (null));
   const [kept, setKept] = useState(/** @type {string | null} */ (query.effect ?? null));
   const ghost = pointed ?? kept;
   const titleOf = useTitles(model);
-  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [failure, setFailure] = useState(/** @type {Error | null} */ (null));
   const [isBusy, setBusy] = useState(false);
   const unchanged = useMemo(() => withoutChange(comparison?.rows ?? [], record?.curves), [comparison, record]);
   if (!model) return html`<${NoModel} study=${study} />`;
@@ -45,7 +45,7 @@ export function MissingEffect({ study, model, query, reload }) {
     setKept(effect);
     if (!isReport) replace(address(["studies", study.id, "effects"], { ...query, effect }));
   };
-  const act = async (/** @type {() => Promise<any>} */ what) => {
+  const act = async (/** @type {() => Promise<Schemas["CalibrationCreated"]>} */ what) => {
     setFailure(null);
     setBusy(true);
     try {
@@ -53,7 +53,7 @@ export function MissingEffect({ study, model, query, reload }) {
       reload?.();
       location.hash = address(["studies", created.study, "live"]);
     } catch (problem) {
-      setFailure(problem);
+      setFailure(errorOf(problem));
     }
     setBusy(false);
   };
@@ -91,7 +91,8 @@ export function MissingEffect({ study, model, query, reload }) {
       </p>
     `;
   if (!record) return html`<${Pending} answer=${record} error=${error} what="the search" />`;
-  const add = (/** @type {any} */ extension) => act(() => extend(model.id, extension));
+  const add = (/** @type {Schemas["NewExtension"]} */ extension) => act(() => extend(model.id, extension));
+  const { outside } = record;
   const layers = comparison ? withGhost(comparison.rows, record.curves, ghost) : [];
   return html`
     <div class="verdict"><${Clauses} text=${record.text} /></div>
@@ -140,14 +141,12 @@ export function MissingEffect({ study, model, query, reload }) {
       </div>
     </div>
     ${
-      record.outside &&
+      outside &&
       html`
         <${LawChart}
-          law=${record.outside}
+          law=${outside}
           name=${study.name}
-          add=${
-            isReport ? null : () => add({ effect_file: { name: "outside.toml", text: record.outside.effect_file } })
-          }
+          add=${isReport ? null : () => add({ effect_file: { name: "outside.toml", text: outside.effect_file } })}
         />
       `
     }
@@ -162,7 +161,7 @@ export function MissingEffect({ study, model, query, reload }) {
       record.other_tests.length > 0 &&
       html`
         <h3>Tests without a rolling wheel that would tell</h3>
-        <ul>${record.other_tests.map((/** @type {string} */ text) => html`<${BenchTest} text=${text} />`)}</ul>
+        <ul>${record.other_tests.map((text) => html`<${BenchTest} text=${text} />`)}</ul>
       `
     }
     ${
@@ -179,7 +178,10 @@ function BenchTest(/** @type {{ text: string }} */ { text }) {
   return html`
     <li>
       ${capital(what)}${" "}
-      ${place && html`<details><summary>In detail</summary><span class="note">${place}</span></details>`}
+      ${
+        place &&
+        html`<details data-fold=${text}><summary>In detail</summary><span class="note">${place}</span></details>`
+      }
     </li>
   `;
 }

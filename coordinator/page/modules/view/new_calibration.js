@@ -11,7 +11,7 @@ import { ImportTable } from "../part/import_table.js";
 import { Failure } from "../part/message.js";
 import { RigForm } from "../part/rig_form.js";
 import { RunChoices } from "../part/run_choices.js";
-import { request } from "../rest/answers.js";
+import { errorOf, request } from "../rest/answers.js";
 import { addExperiment, check, describe, filesOfStudy, get, path, submit } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { address } from "../route.js";
@@ -32,10 +32,10 @@ export function NewCalibration({ query }) {
   const [name, setName] = useState("");
   const [person, setPerson] = useState(author.known());
   const [tags, setTags] = useState("");
-  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [failure, setFailure] = useState(/** @type {Error | null} */ (null));
   const [isSent, setSent] = useState(false);
   // What the service says of the job as it stands; nothing where it has changed since.
-  const [checked, setChecked] = useState(/** @type {any} */ (null));
+  const [checked, setChecked] = useState(/** @type {Schemas["JobCheck"] | null} */ (null));
   const [isChecking, setChecking] = useState(false);
   // A calibration that runs, although its author and tags were not kept.
   const [begun, setBegun] = useState(/** @type {{ study: number, message: string } | null} */ (null));
@@ -53,8 +53,6 @@ export function NewCalibration({ query }) {
     setBegun(null);
   };
   const add = (/** @type {Files} */ more) => change({ ...files, ...more });
-  const without = (/** @type {any} */ all, /** @type {string} */ own) =>
-    Object.fromEntries(Object.entries(all).filter(([key]) => key !== own));
   const remove = (/** @type {string} */ own) => {
     change(without(files, own));
     setBytes(without(bytes, own));
@@ -73,7 +71,7 @@ export function NewCalibration({ query }) {
       setJob(answer.job.name);
       setName(answer.name);
     } catch (error) {
-      setFailure(error);
+      setFailure(errorOf(error));
     }
   };
   useEffect(() => void (query.example && open(query.example)), [query.example]);
@@ -82,7 +80,7 @@ export function NewCalibration({ query }) {
       const content = await (await request("GET", EXAMPLE_TABLE.path)).arrayBuffer();
       take({ texts: {}, bytes: { [EXAMPLE_TABLE.name]: new Uint8Array(content) } });
     } catch (error) {
-      setFailure(error);
+      setFailure(errorOf(error));
     }
   };
   const again = async (/** @type {string} */ study) => {
@@ -92,7 +90,7 @@ export function NewCalibration({ query }) {
       setJob("job.toml");
       setName(draft.name);
     } catch (error) {
-      setFailure(error);
+      setFailure(errorOf(error));
     }
   };
   useEffect(() => void (query.study && again(query.study)), [query.study]);
@@ -122,7 +120,7 @@ export function NewCalibration({ query }) {
       const answer = await check({ experiment: rig, ...calibration });
       if (isSame()) setChecked(answer);
     } catch (error) {
-      if (isSame()) setFailure(error);
+      if (isSame()) setFailure(errorOf(error));
     }
     setChecking(false);
   };
@@ -144,7 +142,7 @@ export function NewCalibration({ query }) {
         setBegun({ study: created.study, message: /** @type {Error} */ (error).message });
       }
     } catch (error) {
-      setFailure(error);
+      setFailure(errorOf(error));
     }
     setSent(false);
   };
@@ -165,12 +163,13 @@ export function NewCalibration({ query }) {
     <h1>New calibration</h1>
     <${DropZone} onFiles=${take} />
     ${
-      examples.answer?.length > 0 &&
+      examples.answer &&
+      examples.answer.length > 0 &&
       html`
         <p>Or begin with an example:</p>
         <ul class="examples">
           ${examples.answer.map(
-            (/** @type {any} */ e) =>
+            (e) =>
               html`
                 <li>
                   <button type="button" onClick=${() => open(e.name)}>${e.name}</button>${" "}
@@ -234,8 +233,8 @@ export function NewCalibration({ query }) {
           <label>
             Job <select
               value=${job}
-              onChange=${(/** @type {any} */ e) => {
-                setJob(e.target.value);
+              onChange=${(/** @type {SelectEvent} */ e) => {
+                setJob(e.currentTarget.value);
                 setChecked(null);
               }}
             >
@@ -276,15 +275,20 @@ export function NewCalibration({ query }) {
             Name <input
               value=${name}
               placeholder="as the study is listed"
-              onInput=${(/** @type {any} */ e) => setName(e.target.value)}
+              onInput=${(/** @type {FieldEvent} */ e) => setName(e.currentTarget.value)}
             />
           </label>
-          <label>Author <input value=${person} onInput=${(/** @type {any} */ e) => setPerson(e.target.value)} /></label>
+          <label>
+            Author <input
+              value=${person}
+              onInput=${(/** @type {FieldEvent} */ e) => setPerson(e.currentTarget.value)}
+            />
+          </label>
           <label>
             Tags <input
               value=${tags}
               placeholder="sand, wheel 3"
-              onInput=${(/** @type {any} */ e) => setTags(e.target.value)}
+              onInput=${(/** @type {FieldEvent} */ e) => setTags(e.currentTarget.value)}
             />
           </label>
           <button type="button" disabled=${absent.length > 0 || Boolean(table) || isChecking} onClick=${look}>
@@ -303,3 +307,12 @@ export function NewCalibration({ query }) {
     }
   `;
 }
+
+/**
+ * The entries but one.
+ * @template Value
+ * @param {Record<string, Value>} all
+ * @param {string} name
+ * @returns {Record<string, Value>}
+ */
+const without = (all, name) => Object.fromEntries(Object.entries(all).filter(([key]) => key !== name));

@@ -9,7 +9,7 @@ import { t } from "../language/language.js";
 import { Failure, Pending } from "../part/message.js";
 import { NoModel } from "../part/no_model.js";
 import { ParameterTable } from "../part/parameter_table.js";
-import { isReport } from "../rest/answers.js";
+import { errorOf, isReport } from "../rest/answers.js";
 import { get, path } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { shownParameter } from "../words/parameter.js";
@@ -18,35 +18,33 @@ import { tickWords, titled } from "../words/quantity.js";
 /** So many parameters fit into one pair plot. */
 const MOST = 6;
 
-/** @param {{ study: any, model: any }} properties */
+/** @param {{ study: Study, model: Member }} properties */
 export function Posterior({ study, model }) {
   const { answer, error } = useAnswer(model && path.figures(model.id));
   if (!model) return html`<${NoModel} study=${study} />`;
-  const line = [...study.ledger, ...(study.point_estimates ?? [])].find(
-    (/** @type {any} */ l) => l.calibration === model.id,
-  );
+  const line = [...study.ledger, ...study.point_estimates].find((l) => l.calibration === model.id);
   if (!answer) return html`<${Pending} answer=${answer} error=${error} what="The posterior" />`;
-  const marginals = (answer.marginals ?? []).map((/** @type {any} */ m) => ({ ...m, ...m.parameter }));
+  const marginals = answer.marginals.map((m) => ({ ...m, ...m.parameter }));
   return html`
-    <${Pictures} key=${model.id} marginals=${marginals} pairs=${answer.posteriors ?? []} model=${model} />
+    <${Pictures} key=${model.id} marginals=${marginals} pairs=${answer.posteriors} model=${model} />
     <h2>Parameters</h2>
     <${ParameterTable} marginals=${marginals} line=${line} />
     ${!isReport && html`<${Draws} model=${model} />`}
   `;
 }
 
-function Pictures(/** @type {{ marginals: any[], pairs: any[], model: any }} */ { marginals, pairs, model }) {
-  const names = marginals.map((/** @type {any} */ m) => m.name);
+function Pictures(
+  /** @type {{ marginals: Marginal[], pairs: JointPosterior[], model: Member }} */ { marginals, pairs, model },
+) {
+  const names = marginals.map((m) => m.name);
   const [chosen, setChosen] = useState(/** @type {string[]} */ (names.slice(0, MOST)));
-  const [cell, setCell] = useState(/** @type {any} */ (null));
+  const [cell, setCell] = useState(/** @type {JointPosterior | null} */ (null));
   if (marginals.length === 0)
     return html`<p class="empty">A fit has a point and no draws: there is no density to draw.</p>`;
   const flip = (/** @type {string} */ name) =>
     setChosen(chosen.includes(name) ? chosen.filter((c) => c !== name) : [...chosen, name].slice(-MOST));
   return html`
-    <div class="figures small">
-      ${marginals.map((/** @type {any} */ m) => html`<${Marginal} key=${m.name} marginal=${m} />`)}
-    </div>
+    <div class="figures small">${marginals.map((m) => html`<${Marginal} key=${m.name} marginal=${m} />`)}</div>
     <p class="legend">
       <span>filled: posterior</span>
       <span>dashed outline: prior</span>
@@ -71,7 +69,7 @@ function Pictures(/** @type {{ marginals: any[], pairs: any[], model: any }} */ 
     }
     <${PairPlot}
       pairs=${pairs}
-      marginals=${marginals.filter((/** @type {any} */ m) => chosen.includes(m.name))}
+      marginals=${marginals.filter((m) => chosen.includes(m.name))}
       name=${model.name}
       onCell=${setCell}
     />
@@ -87,10 +85,10 @@ function Pictures(/** @type {{ marginals: any[], pairs: any[], model: any }} */ 
   `;
 }
 
-function Marginal(/** @type {{ marginal: any }} */ { marginal }) {
+function Marginal(/** @type {{ marginal: Marginal }} */ { marginal }) {
   const { name, unit, isLogarithm, of } = shownParameter(marginal);
   const isLog = marginal.logarithmic || isLogarithm;
-  const rows = marginal.grid.map((/** @type {number} */ x, /** @type {number} */ k) => ({
+  const rows = marginal.grid.map((x, k) => ({
     x: of(x),
     prior: marginal.prior[k],
     posterior: marginal.posterior[k],
@@ -124,7 +122,7 @@ function Marginal(/** @type {{ marginal: any }} */ { marginal }) {
             Plot.lineY(rows, { x: "x", y: "posterior", stroke: "var(--series-0)" }),
             Plot.lineY(rows, { x: "x", y: "prior", stroke: "var(--prior)", strokeDasharray: "5 3" }),
             ...(marginal.mode === null ? [] : [Plot.ruleX([of(marginal.mode)], { stroke: "var(--ink)" })]),
-            ...(marginal.reference === null
+            ...(typeof marginal.reference !== "number"
               ? []
               : [
                   Plot.ruleX([of(marginal.reference)], {
@@ -140,21 +138,14 @@ function Marginal(/** @type {{ marginal: any }} */ { marginal }) {
   `;
 }
 
-function Draws(/** @type {{ model: any }} */ { model }) {
-  const [failure, setFailure] = useState(/** @type {any} */ (null));
+function Draws(/** @type {{ model: Member }} */ { model }) {
+  const [failure, setFailure] = useState(/** @type {Error | null} */ (null));
   const download = async () => {
     try {
-      const { columns, rows } = await get(`${path.calibration(model.id)}/posterior`);
-      save(
-        "posterior.csv",
-        csv(
-          rows.map((/** @type {number[]} */ row) =>
-            Object.fromEntries(columns.map((/** @type {string} */ c, /** @type {number} */ k) => [c, row[k]])),
-          ),
-        ),
-      );
+      const { columns, rows } = await get(path.posterior(model.id));
+      save("posterior.csv", csv(rows.map((row) => Object.fromEntries(columns.map((c, k) => [c, row[k]])))));
     } catch (error) {
-      setFailure(error);
+      setFailure(errorOf(error));
     }
   };
   return html`

@@ -8,7 +8,7 @@ import { Failure, Pending } from "../part/message.js";
 import { NoModel } from "../part/no_model.js";
 import { Table } from "../part/table.js";
 import * as table from "../prediction_table.js";
-import { isReport } from "../rest/answers.js";
+import { errorOf, isReport } from "../rest/answers.js";
 import { path, predict } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
 import { loadWords, slipWords, speedWords } from "../words/condition.js";
@@ -24,19 +24,25 @@ import {
 import { capital, digits, minus, numberOf, probability, shown, titled } from "../words/quantity.js";
 import { reasonWords } from "../words/refusal.js";
 
+/**
+ * @typedef {import("../words/predicted_quantity.js").Quantity} Quantity
+ * @typedef {{ sign: string, limit: string }} TypedStatement
+ * @typedef {Record<(typeof CONDITIONS)[number], (value: number) => string>} ConditionWords
+ */
+
 /** So long the sliders stand still before their place is computed [ms]. */
 const REST_MS = 350;
 /** Runs whose load and speed differ by less are near a condition. */
 const NEAR = 0.06;
 const CONDITIONS = /** @type {const} */ (["slip", "load", "speed"]);
 
-/** @param {{ study: any, model: any }} properties */
+/** @param {{ study: Study, model: Member }} properties */
 export function Predict({ study, model }) {
   const { answer: comparison, error } = useAnswer(model ? path.comparison(model.id) : null);
   const { answer: grid, error: failure } = useAnswer(model ? path.predictionGrid(model.id) : null);
   if (!model) return html`<${NoModel} study=${study} />`;
   if (!comparison) return html`<${Pending} answer=${comparison} error=${error} what="the measured runs" />`;
-  const fitted = comparison.rows.filter((/** @type {any} */ row) => row.use === "fit");
+  const fitted = comparison.rows.filter((row) => row.use === "fit");
   if (fitted.length === 0)
     return html`<p class="empty">No wheel run is fitted, so that nothing tells what a wheel would do.</p>`;
   if (isReport && failure) return html`<p class="empty">This report has no predictions of this model.</p>`;
@@ -53,7 +59,7 @@ export function Predict({ study, model }) {
   `;
 }
 
-/** @param {{ study: any, model: any, rows: any[], fitted: any[], grid: table.Grid }} properties */
+/** @param {{ study: Study, model: Member, rows: MeasuredRow[], fitted: MeasuredRow[], grid: table.Grid }} properties */
 function Calculator({ study, model, rows, fitted, grid }) {
   const [ranges, reach, isRim] = [table.rangesOf(grid.fitted), table.rangesOf(grid.reach), grid.holds_rim];
   const wheels = [...new Set(fitted.map((row) => row.wheel))];
@@ -61,7 +67,7 @@ function Calculator({ study, model, rows, fitted, grid }) {
     /** @type {table.Place} */ ({ ...table.middle(fitted, ranges, isRim), wheel: wheels[0] }),
   );
   const [chosen, setChosen] = useState("drawbar_pull_n");
-  const [statement, setStatement] = useState(/** @type {{ sign: string, limit: string }} */ ({ sign: ">", limit: "" }));
+  const [statement, setStatement] = useState(/** @type {TypedStatement} */ ({ sign: ">", limit: "" }));
   // A model that rolls over terrain, or is not ours, has no grid.
   const isRolling = grid.wheels.length === 0;
   const [isAsked, setAsked] = useState(!isRolling && !isReport);
@@ -69,7 +75,7 @@ function Calculator({ study, model, rows, fitted, grid }) {
   const limit = numberOf(statement.limit);
   // What the last answer at rest has; a model that rolls has no grid, so that only this tells which statements can be
   // asked.
-  const [predicted, setPredicted] = useState(/** @type {{ name: string, unit: string }[]} */ ([]));
+  const [predicted, setPredicted] = useState(/** @type {Quantity[]} */ ([]));
   const quantities = measuredQuantities(predicted.length > 0 ? predicted : shownQuantities(grid), rows);
   const found = quantities.find((q) => q.name === chosen) ?? quantities[0];
   const rest = useAtRest(
@@ -111,7 +117,7 @@ function Calculator({ study, model, rows, fitted, grid }) {
           html`
             <p>
               <label>
-                Wheel <select onChange=${(/** @type {any} */ e) => set({ wheel: e.target.value })}>
+                Wheel <select onChange=${(/** @type {SelectEvent} */ e) => set({ wheel: e.currentTarget.value })}>
                   ${wheels.map(
                     (wheel) => html`<option value=${wheel} selected=${wheel === place.wheel}>${wheel}</option>`,
                   )}
@@ -150,8 +156,8 @@ function Calculator({ study, model, rows, fitted, grid }) {
             <p>
               <label>
                 Quantity <select
-                  onChange=${(/** @type {any} */ e) => {
-                    setChosen(e.target.value);
+                  onChange=${(/** @type {SelectEvent} */ e) => {
+                    setChosen(e.currentTarget.value);
                     setStatement({ ...statement, limit: "" });
                   }}
                 >
@@ -248,7 +254,9 @@ function Calculator({ study, model, rows, fitted, grid }) {
 }
 
 /** What the model refuses, and why: in the place of the curve where no slip is left. */
-function Refused(/** @type {{ source: table.Table, place: table.Place, words: any }} */ { source, place, words }) {
+function Refused(
+  /** @type {{ source: table.Table, place: table.Place, words: ConditionWords }} */ { source, place, words },
+) {
   const found = table.refused(source);
   if (!found) return null;
   const slips = found.spans
@@ -279,15 +287,15 @@ function useAtRest(
 ) {
   const nothing = {
     key: "",
-    of: "",
+    curve: "",
     table: /** @type {table.Table | null} */ (null),
-    statement: /** @type {any} */ (null),
+    statement: /** @type {Schemas["StatementProbability"] | null} */ (null),
     draws: 0,
-    error: /** @type {any} */ (null),
+    error: /** @type {Error | null} */ (null),
   };
   const [state, setState] = useState(nothing);
-  const of = [id, place.wheel, place.load, place.speed].join(" ");
-  const key = [of, place.slip, statement].join(" ");
+  const curve = [id, place.wheel, place.load, place.speed].join(" ");
+  const key = [curve, place.slip, statement].join(" ");
   useEffect(() => {
     if (id === null) return undefined;
     let isOver = false;
@@ -300,10 +308,10 @@ function useAtRest(
       }).then(
         ({ runs, draws }) => {
           if (isOver) return;
-          setState({ key, of, table: fill(runs), statement: runs[here].statements[0] ?? null, draws, error: null });
+          setState({ key, curve, table: fill(runs), statement: runs[here].statements[0] ?? null, draws, error: null });
           onQuantities(quantitiesOf(runs));
         },
-        (error) => isOver || setState({ ...nothing, key, of, error }),
+        (error) => isOver || setState({ ...nothing, key, curve, error: errorOf(error) }),
       );
     }, REST_MS);
     return () => {
@@ -313,15 +321,15 @@ function useAtRest(
   }, [key]);
   if (state.key === key) return { ...state, isBusy: false };
   // The curve of a load and a speed holds at every slip; a statement does not.
-  return state.of === of ? { ...state, statement: null, isBusy: true } : { ...nothing, isBusy: true };
+  return state.curve === curve ? { ...state, statement: null, isBusy: true } : { ...nothing, isBusy: true };
 }
 
-const quantitiesOf = (/** @type {any[]} */ runs) =>
+const quantitiesOf = (/** @type {Schemas["PredictedRun"][]} */ runs) =>
   shownQuantities(runs.find((run) => run.quantities.length > 0) ?? { quantities: [] });
 
 /** Runs that were measured near a condition. */
 function nearRuns(
-  /** @type {any[]} */ rows,
+  /** @type {MeasuredRow[]} */ rows,
   /** @type {table.Place} */ { wheel, load, speed },
   /** @type {boolean} */ isRim,
   /** @type {string | null} */ channel,
@@ -353,7 +361,7 @@ function Slider({ id, label, text, value, range, isBeyond, move }) {
         max=${range[1]}
         value=${value}
         aria-valuetext=${text}
-        onInput=${(/** @type {any} */ event) => move(Number(Number(event.target.value).toPrecision(3)))}
+        onInput=${(/** @type {FieldEvent} */ event) => move(Number(Number(event.currentTarget.value).toPrecision(3)))}
       />
     </div>
   `;
@@ -361,8 +369,8 @@ function Slider({ id, label, text, value, range, isBeyond, move }) {
 
 /**
  * `P(drawbar pull > 12 N)`: typed in the unit that is shown.
- * @param {{ found: any, statement: any, change: (to: any) => void, answer: any, isBusy: boolean, isNumber: boolean }}
- *   properties
+ * @param {{ found: Quantity, statement: TypedStatement, change: (to: TypedStatement) => void, answer:
+ *   Schemas["StatementProbability"] | null, isBusy: boolean, isNumber: boolean }} properties
  */
 function Statement({ found, statement, change, answer, isBusy, isNumber }) {
   const { unit } = shown(found.unit);
@@ -372,7 +380,7 @@ function Statement({ found, statement, change, answer, isBusy, isNumber }) {
       <span class="whole">How probable is ${quantityName(found.name)}</span>
       <select
         aria-label="above or below"
-        onChange=${(/** @type {any} */ e) => change({ ...statement, sign: e.target.value })}
+        onChange=${(/** @type {SelectEvent} */ e) => change({ ...statement, sign: e.currentTarget.value })}
       >
         ${[">", "<"].map((sign) => html`<option value=${sign} selected=${sign === statement.sign}>${sign}</option>`)}
       </select>
@@ -383,7 +391,7 @@ function Statement({ found, statement, change, answer, isBusy, isNumber }) {
           aria-label=${titled(t`limit`, unit)}
           aria-invalid=${!isOpen && !isNumber}
           value=${statement.limit}
-          onInput=${(/** @type {any} */ e) => change({ ...statement, limit: e.target.value })}
+          onInput=${(/** @type {FieldEvent} */ e) => change({ ...statement, limit: e.currentTarget.value })}
         />${" "}
         ${unit === "1" ? "" : unit}?
       </span>
@@ -417,7 +425,7 @@ function Statement({ found, statement, change, answer, isBusy, isNumber }) {
 
 /**
  * Every quantity at the chosen condition.
- * @param {{ source: table.Table, quantities: any[], place: table.Place }} properties
+ * @param {{ source: table.Table, quantities: Quantity[], place: table.Place }} properties
  */
 function Values({ source, quantities, place }) {
   const all = quantities.map(({ name, unit }) => ({

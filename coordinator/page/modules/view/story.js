@@ -10,7 +10,7 @@ import { Flags } from "../part/flags.js";
 import { Headline } from "../part/headline.js";
 import { Later } from "../part/later.js";
 import { Failure } from "../part/message.js";
-import { isReport } from "../rest/answers.js";
+import { errorOf, isReport } from "../rest/answers.js";
 import { discover, extend } from "../rest/routes.js";
 import { address } from "../route.js";
 import { sentence } from "../words/clauses.js";
@@ -25,7 +25,7 @@ const EVIDENCES = / \(ln evidence [^)]*\)/;
 /** So many steps are shown at first. */
 const FIRST_STEPS = 3;
 
-/** @param {{ study: any, model: any, reload?: () => void }} properties */
+/** @param {{ study: Study, model: Member, reload?: () => void }} properties */
 export function Story({ study, model, reload }) {
   const story = model?.story;
   const lines = ledgerLines(study);
@@ -80,7 +80,7 @@ export function Story({ study, model, reload }) {
         <${Steps} steps=${isAtWork ? [] : story.next.steps} study=${study} model=${model} reload=${reload} />
         ${
           isReport &&
-          story.next.steps.some((/** @type {any} */ step) => step.command) &&
+          story.next.steps.some((/** @type {NextStep} */ step) => step.command) &&
           html`<p class="note">Commands run in the folder of this report.</p>`
         }
       </section>
@@ -103,13 +103,13 @@ export function Story({ study, model, reload }) {
 }
 
 /** Alarm where an error is no noise, calm where each is, neither where the noise of a channel is not known. */
-function mood(/** @type {any[]} */ channels) {
+function mood(/** @type {Story["wrong"]["channels"]} */ channels) {
   if (channels.every((c) => c.is_within_noise)) return "calm";
   return channels.some((c) => c.is_judged && !c.is_within_noise) || channels.length === 0 ? "alarm" : "";
 }
 
 /** Why a study failed, and what to do. */
-function StudyFailure(/** @type {{ study: any }} */ { study }) {
+function StudyFailure(/** @type {{ study: Study }} */ { study }) {
   if (!study.failure) return null;
   return html`
     <section class="card" role="alert">
@@ -127,8 +127,10 @@ function StudyFailure(/** @type {{ study: any }} */ { study }) {
 }
 
 /** The first steps; the others are folded. */
-function Steps(/** @type {{ steps: any[], study: any, model: any, reload?: () => void }} */ { steps, ...given }) {
-  const list = (/** @type {any[]} */ some, start = 1) =>
+function Steps(
+  /** @type {{ steps: NextStep[], study: Study, model: Member, reload?: () => void }} */ { steps, ...given },
+) {
+  const list = (/** @type {NextStep[]} */ some, start = 1) =>
     html`<ol start=${start}>${some.map((step) => html`<li><${Step} step=${step} ...${given} /></li>`)}</ol>`;
   const later = steps.slice(FIRST_STEPS);
   return html`
@@ -147,12 +149,12 @@ function Steps(/** @type {{ steps: any[], study: any, model: any, reload?: () =>
 
 /**
  * A step with the button that takes it; a report has the command.
- * @param {{ step: any, study: any, model: any, reload?: () => void }} properties
+ * @param {{ step: NextStep, study: Study, model: Member, reload?: () => void }} properties
  */
 function Step({ step, study, model, reload }) {
-  const [failure, setFailure] = useState(/** @type {any} */ (null));
+  const [failure, setFailure] = useState(/** @type {Error | null} */ (null));
   const [isBusy, setBusy] = useState(false);
-  const act = async (/** @type {() => Promise<any>} */ what) => {
+  const act = async (/** @type {() => Promise<Schemas["CalibrationCreated"]>} */ what) => {
     setBusy(true);
     setFailure(null);
     try {
@@ -160,11 +162,11 @@ function Step({ step, study, model, reload }) {
       reload?.();
       location.hash = address(["studies", created.study ?? study.id, "live"]);
     } catch (error) {
-      setFailure(error);
+      setFailure(errorOf(error));
     }
     setBusy(false);
   };
-  const buttons = /** @type {Record<string, any>} */ ({
+  const buttons = /** @type {Partial<Record<NextStep["kind"], () => unknown>>} */ ({
     add_effect: () =>
       html`
         <button
@@ -219,7 +221,12 @@ function Step({ step, study, model, reload }) {
     ${sentence(step.text)}${" "}
     ${
       step.detail &&
-      html`<details><summary>In detail</summary><span class="note">${sentence(step.detail)}</span></details>`
+      html`
+        <details data-fold=${step.text}>
+          <summary>In detail</summary>
+          <span class="note">${sentence(step.detail)}</span>
+        </details>
+      `
     }
     ${call}
     <${Failure} error=${failure} />

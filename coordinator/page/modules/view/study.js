@@ -76,24 +76,25 @@ export function StudyPage({ id, view, query }) {
  * The bar of chosen runs, which is loaded when runs are chosen first, here or by the address. It stays to take them out
  * of the address again.
  */
-function ChosenRunsLater(/** @type {{ study: any, model: any, asked?: string, view: string }} */ properties) {
+function ChosenRunsLater(/** @type {{ study: Study, model: Member, asked?: string, view: string }} */ properties) {
   const isNeeded = useRef(false);
   if (useChosen() || properties.asked) isNeeded.current = true;
   return isNeeded.current ? html`<${Later} title=${t`Chosen runs`} load=${chosenRuns} ...${properties} />` : null;
 }
 
 /** Which model of the study the pictures show. */
-function ModelPicker(/** @type {{ study: any, model: any, view: string }} */ { study, model, view }) {
-  const finished = models(study).filter((/** @type {any} */ m) => m.state === "finished");
+function ModelPicker(/** @type {{ study: Study, model: Member, view: string }} */ { study, model, view }) {
+  const finished = models(study).filter((m) => m.state === "finished");
   if (finished.length < 2) return null;
-  const go = (/** @type {any} */ event) => replace(address(["studies", study.id, view], { model: event.target.value }));
+  const go = (/** @type {SelectEvent} */ event) =>
+    replace(address(["studies", study.id, view], { model: event.currentTarget.value }));
   return html`
     <p class="picker">
       <label>
         Model
         <select value=${model?.id} onChange=${go}>
           ${finished.map(
-            (/** @type {any} */ m) =>
+            (m) =>
               html`
                 <option value=${m.id} selected=${m.id === model?.id}>
                   ${modelName(study, m)}
@@ -108,4 +109,4 @@ function ModelPicker(/** @type {{ study: any, model: any, view: string }} */ { s
 }
 
 /** Whether nothing follows any more. */
-export const isOver = (/** @type {any} */ study) => FINAL.includes(study.state);
+export const isOver = (/** @type {Study} */ study) => FINAL.includes(study.state);

@@ -13,25 +13,28 @@ import { parameterTitle, shownParameter } from "../words/parameter.js";
 import { capital, channelName, digits, probability, shown, titled } from "../words/quantity.js";
 import { judgements } from "../words/trust.js";
 
-/** @param {{ study: any, model: any }} properties */
+/** @param {{ study: Study, model: Member }} properties */
 export function Trust({ study, model }) {
   const { answer: provenance, error } = useAnswer(model ? path.provenance(model.id) : null);
   const { answer: diagnostics } = useAnswer(model ? path.diagnostics(model.id) : null);
   if (!model) return html`<${NoModel} study=${study} />`;
   if (!provenance) return html`<${Pending} answer=${provenance} error=${error} what="the account" />`;
-  const line = study.ledger.find((/** @type {any} */ l) => l.calibration === model.id) ?? null;
+  const line = study.ledger.find((l) => l.calibration === model.id);
   return html`
-    ${diagnostics && html`<${Verdict} judgements=${judgements(line, diagnostics, model.story.wrong)} />`}
+    ${
+      diagnostics &&
+      html`<${Verdict} judgements=${judgements(line, diagnostics, model.story?.wrong ?? { channels: [] })} />`
+    }
     <details>
       <summary>Errors, interpolation and intervals, in sentences</summary>
-      ${provenance.sentences.map((/** @type {string} */ s) => html`<p>${sentence(s)}</p>`)}
+      ${provenance.sentences.map((s) => html`<p>${sentence(s)}</p>`)}
     </details>
     ${
       provenance.notes.length > 0 &&
       html`
         <details>
           <summary>What was assumed, and what is doubtful</summary>
-          <ul class="note">${provenance.notes.map((/** @type {string} */ n) => html`<li>${sentence(n)}</li>`)}</ul>
+          <ul class="note">${provenance.notes.map((n) => html`<li>${sentence(n)}</li>`)}</ul>
         </details>
       `
     }
@@ -40,7 +43,7 @@ export function Trust({ study, model }) {
       study.rig.length > 0 &&
       html`
         <h2>What the rig did</h2>
-        ${study.rig.map((/** @type {string} */ s) => html`<p>${sentence(s)}</p>`)}
+        ${study.rig.map((s) => html`<p>${sentence(s)}</p>`)}
         <p class="note">From repeats of a condition alone, without a model of the contact.</p>
       `
     }
@@ -50,7 +53,7 @@ export function Trust({ study, model }) {
       <dd>${provenance.model}, version ${provenance.model_version ?? "unknown"}</dd>
       <dt>Data</dt>
       <dd>${said(provenance.data)}</dd>
-      ${provenance.errors.map((/** @type {string} */ e) => html`<dt>Errors</dt><dd>${said(e)}</dd>`)}
+      ${provenance.errors.map((e) => html`<dt>Errors</dt><dd>${said(e)}</dd>`)}
       <dt>Algorithm</dt>
       <dd>${said(provenance.algorithm)}, seed ${provenance.seed}</dd>
       <dt>Program</dt>
@@ -61,8 +64,7 @@ export function Trust({ study, model }) {
     </p>
     <details><summary>Text of the job</summary><pre tabindex="0">${provenance.job}</pre></details>
     ${provenance.effects.map(
-      (/** @type {any} */ e) =>
-        html`<details><summary>Effect ${e.name}</summary><pre tabindex="0">${e.text}</pre></details>`,
+      (e) => html`<details><summary>Effect ${e.name}</summary><pre tabindex="0">${e.text}</pre></details>`,
     )}
   `;
 }
@@ -86,12 +88,13 @@ function Verdict(/** @type {{ judgements: import("../words/trust.js").Judgement[
 }
 
 /** What each channel tells, and what the parameters know of it. */
-function Data(/** @type {{ diagnostics: any }} */ { diagnostics }) {
-  const p = (/** @type {number | null} */ value) =>
+function Data(/** @type {{ diagnostics: Diagnostics }} */ { diagnostics }) {
+  const p = (/** @type {number | null | undefined} */ value) =>
     value === null || value === undefined ? "–" : value < 1e-6 ? "< 10⁻⁶" : digits(value, 2);
-  const channels = diagnostics.channels.map((/** @type {any} */ c) => {
+  const channels = diagnostics.channels.map((c) => {
     const quantity = shown(c.unit);
-    const value = (/** @type {number | null} */ v) => digits(v === null ? null : v * quantity.scale);
+    const value = (/** @type {number | null | undefined} */ v) =>
+      digits(typeof v === "number" ? v * quantity.scale : null);
     return [
       titled(channelName(c.channel), quantity.unit),
       c.data,
@@ -103,7 +106,7 @@ function Data(/** @type {{ diagnostics: any }} */ { diagnostics }) {
       p(c.chi_square?.p),
     ];
   });
-  const parameters = diagnostics.parameters.map((/** @type {any} */ q) => [
+  const parameters = diagnostics.parameters.map((q) => [
     shownParameter(q).name,
     digits(q.contraction, 2),
     p(q.conflict_p),
@@ -136,14 +139,14 @@ function Data(/** @type {{ diagnostics: any }} */ { diagnostics }) {
 }
 
 /** What was computed twice. */
-function verified(/** @type {any} */ { results, confirmed, workers }) {
+function verified(/** @type {Diagnostics["verification"]} */ { results, confirmed, workers }) {
   return workers < 2
     ? t`One worker computed all ${results} results, so that none was compared with another's.`
     : t`${workers} workers computed ${results} results; ${confirmed} were computed twice and agreed.`;
 }
 
 /** Where the model refuses parameters. */
-function Refused(/** @type {{ rejections: any }} */ { rejections }) {
+function Refused(/** @type {{ rejections: Schemas["RejectionDiagnostics"] }} */ { rejections }) {
   if (rejections.prior_draws === 0) return null;
   if (rejections.prior_refused === 0)
     return html`<p>The model accepted every draw from the prior (${rejections.prior_draws}).</p>`;
@@ -155,17 +158,17 @@ function Refused(/** @type {{ rejections: any }} */ { rejections }) {
     /** @type {number} */ count,
   ) => (k === 0 ? t`below ${to}` : k === count - 1 ? t`above ${from}` : `${from}${t` to `}${to}`);
   const cell = (
-    /** @type {any} */ bin,
+    /** @type {Schemas["PriorBin"]} */ bin,
     /** @type {number} */ k,
-    /** @type {any[]} */ bins,
-    /** @type {(value: number) => number} */ of,
+    /** @type {number} */ count,
+    /** @type {(value: number) => number} */ shownValue,
   ) => {
-    const end = (/** @type {number | null} */ v) => (v === null ? "" : digits(of(v), 3));
-    const refused = /** @type {number[]} */ (Object.values(bin.refused)).reduce((a, b) => a + b, 0);
+    const end = (/** @type {number | null | undefined} */ v) => (typeof v === "number" ? digits(shownValue(v), 3) : "");
+    const refused = Object.values(bin.refused).reduce((a, b) => a + b, 0);
     return html`
       <b>${refused}</b> of ${bin.draws}
       <br />
-      <span class="note">${range(end(bin.from), end(bin.to), k, bins.length)}</span>
+      <span class="note">${range(end(bin.from), end(bin.to), k, count)}</span>
     `;
   };
   return html`
@@ -177,9 +180,9 @@ function Refused(/** @type {{ rejections: any }} */ { rejections }) {
     <${Table}
       label="Rejections by region of the prior"
       head=${[t`parameter`, t`lowest fifth`, t`second`, t`middle`, t`fourth`, t`highest fifth`]}
-      rows=${rejections.parameters.map((/** @type {any} */ q) => [
+      rows=${rejections.parameters.map((q) => [
         parameterTitle(q),
-        ...q.bins.map((/** @type {any} */ bin, /** @type {number} */ k) => cell(bin, k, q.bins, shownParameter(q).of)),
+        ...q.bins.map((bin, k) => cell(bin, k, q.bins.length, shownParameter(q).of)),
       ])}
     />
   `;

@@ -5,7 +5,7 @@ import { html } from "../html.js";
 import { t } from "../language/language.js";
 import { Later } from "../part/later.js";
 
-/** @typedef {{ name: string, title: string, load: () => Promise<any> }} View */
+/** @typedef {{ name: string, title: string, load: () => Promise<unknown> }} View */
 
 /** @type {View[]} */
 export const VIEWS = [
@@ -25,7 +25,7 @@ export const VIEWS = [
   { name: "live", title: t`Live`, load: () => import("./live.js").then((module) => module.Live) },
 ];
 
-/** @param {{ view: View, [property: string]: any }} properties the other properties are those of the view */
+/** @param {{ view: View, [property: string]: unknown }} properties the other properties are those of the view */
 export function ShownView({ view, ...properties }) {
   return html`<${Later} key=${view.name} title=${view.title} load=${view.load} ...${properties} />`;
 }

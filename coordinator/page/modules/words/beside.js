@@ -6,8 +6,8 @@ import { meanAndSpread, shownParameter } from "./parameter.js";
 import { capital, channelName, CHANNELS, digits, errorWords, minus, shown, unitOf, words } from "./quantity.js";
 
 /**
- * @typedef {{ study: any, line: any, diagnostics: any }} Side line: of the error ledger of its current model.
- *   diagnostics: of that model
+ * @typedef {{ study: Study, line?: LedgerEntry, diagnostics: Diagnostics | null }} Side line: of the error ledger of
+ *   its current model. diagnostics: of that model
  */
 
 const USES = /** @type {const} */ (["holdout", "fit"]);
@@ -28,7 +28,7 @@ export function rowsBeside(sides) {
       ...of(({ study, line }) =>
         [
           words(study.model_kind ?? t`unknown`),
-          ...(line?.effects.length > 0 ? [t`with ${line.effects.map(words).join(", ")}`] : []),
+          ...(line && line.effects.length > 0 ? [t`with ${line.effects.map(words).join(", ")}`] : []),
         ].join(" "),
       ),
       "",
@@ -70,7 +70,7 @@ function ratioWords(/** @type {number} */ before, /** @type {number} */ now) {
 /** The parameters by posterior mean and sd. */
 function parameters(/** @type {Side[]} */ sides) {
   const units = new Map(
-    sides.flatMap(({ diagnostics }) => (diagnostics?.parameters ?? []).map((/** @type {any} */ q) => [q.name, q.unit])),
+    sides.flatMap(({ diagnostics }) => (diagnostics?.parameters ?? []).map((q) => [q.name, q.unit])),
   );
   const names = [...new Set(sides.flatMap(({ line }) => Object.keys(line?.parameters ?? {})))];
   return names.map((name) => {
@@ -83,12 +83,12 @@ function parameters(/** @type {Side[]} */ sides) {
     });
     const [a, b] = values;
     const sd = a && b ? Math.max(a.sd, b.sd) : 0;
-    return [called.name, ...cells, sd > 0 ? `${minus(digits((b.mean - a.mean) / sd, 2))} sds` : ""];
+    return [called.name, ...cells, a && b && sd > 0 ? `${minus(digits((b.mean - a.mean) / sd, 2))} sds` : ""];
   });
 }
 
 /** Whether the rows of two comparisons are of one campaign: runs of one name have one measurement. */
-export function isOneCampaign(/** @type {any[]} */ a, /** @type {any[]} */ b) {
+export function isOneCampaign(/** @type {MeasuredRow[]} */ a, /** @type {MeasuredRow[]} */ b) {
   const measured = new Map(a.map((row) => [`${row.run} ${row.channel}`, row.measured]));
   const shared = b.filter((row) => measured.has(`${row.run} ${row.channel}`));
   return shared.length > 0 && shared.every((row) => measured.get(`${row.run} ${row.channel}`) === row.measured);

@@ -4,18 +4,16 @@ import { t } from "../language/language.js";
 import { CHANNELS, digits, errorWords, minus, probability, short, shown, titled, unitOf } from "./quantity.js";
 
 /** Names in the order of falling evidence; a model without evidence comes last. */
-const byEvidence = (/** @type {any} */ a, /** @type {any} */ b) =>
+const byEvidence = (/** @type {ComparedModel} */ a, /** @type {ComparedModel} */ b) =>
   (b.log_evidence ?? -Infinity) - (a.log_evidence ?? -Infinity);
 
 /**
  * Head and rows of the comparison, the most probable model first.
- * @param {any} comparison the `models` of a study
+ * @param {ModelComparison} comparison the `models` of a study
  * @returns {{ head: string[], rows: string[][] }}
  */
 export function comparedModels(comparison) {
-  const channels = CHANNELS.filter((channel) =>
-    comparison.models.some((/** @type {any} */ m) => m.left_out?.[channel]),
-  );
+  const channels = CHANNELS.filter((channel) => comparison.models.some((m) => m.left_out?.[channel]));
   const head = [
     t`model`,
     t`ln evidence`,
@@ -31,7 +29,7 @@ export function comparedModels(comparison) {
       model.name,
       evidence(model),
       probability(model.probability),
-      model.chi_square_p === null ? "–" : probability(model.chi_square_p),
+      typeof model.chi_square_p === "number" ? probability(model.chi_square_p) : "–",
       ...channels.map((c) => (model.left_out?.[c] ? errorWords(model.left_out[c].rmse * shown(unitOf(c)).scale) : "–")),
       errorWords(model.left_out?.all.rmse_fixed_sigma),
       answer(comparison, model),
@@ -40,16 +38,16 @@ export function comparedModels(comparison) {
 }
 
 /** Log-evidence and its standard error, both to the second digit of the error. */
-function evidence(/** @type {any} */ { log_evidence: log, log_evidence_se: se }) {
-  if (log === null) return "–";
-  if (!(se > 0)) return minus(log.toFixed(1));
+function evidence(/** @type {ComparedModel} */ { log_evidence: log, log_evidence_se: se }) {
+  if (log === null || log === undefined) return "–";
+  if (!se || se < 0) return minus(log.toFixed(1));
   const decimals = Math.max(0, 1 - Math.floor(Math.log10(se)));
   return `${minus(log.toFixed(decimals))} ± ${se.toFixed(decimals)}`;
 }
 
 /** What is decided about a model. */
-function answer(/** @type {any} */ comparison, /** @type {any} */ model) {
-  const best = comparison.models.find((/** @type {any} */ m) => m.calibration === comparison.best);
+function answer(/** @type {ModelComparison} */ comparison, /** @type {ComparedModel} */ model) {
+  const best = comparison.models.find((m) => m.calibration === comparison.best);
   const decided =
     model !== best
       ? behind(best, model)
@@ -62,14 +60,15 @@ function answer(/** @type {any} */ comparison, /** @type {any} */ model) {
 }
 
 /** How far a model stays behind the best one. */
-function behind(/** @type {any} */ best, /** @type {any} */ model) {
-  if (model.log_evidence === null || best?.log_evidence === null) return t`no evidence`;
-  return t`${digits(best.log_evidence - model.log_evidence)} nats less`;
+function behind(/** @type {ComparedModel | undefined} */ best, /** @type {ComparedModel} */ model) {
+  const [highest, lower] = [best?.log_evidence, model.log_evidence];
+  if (typeof highest !== "number" || typeof lower !== "number") return t`no evidence`;
+  return t`${digits(highest - lower)} nats less`;
 }
 
 /** Which data the errors are of. */
-export const leftOutWords = (/** @type {any} */ comparison) =>
-  comparison.models.some((/** @type {any} */ m) => m.left_out_by === "holdout")
+export const leftOutWords = (/** @type {ModelComparison} */ comparison) =>
+  comparison.models.some((m) => m.left_out_by === "holdout")
     ? t`Errors are of the held-out runs, which are never fitted`
     : t`No runs are held out: errors are of each condition, predicted from the others by weighting the draws, exact
       enough to rank models alone`;

@@ -15,7 +15,7 @@ const LEAST_SPEED = 1e-9;
  */
 
 /** The speed of the rim [m/s], from slip and sled speed. */
-export function rimSpeed(/** @type {Condition} */ { slip, sled_speed_m_s }) {
+export function rimSpeed(/** @type {Pick<Condition, "slip" | "sled_speed_m_s">} */ { slip, sled_speed_m_s }) {
   return slip >= 0 ? sled_speed_m_s / (1 - slip) : sled_speed_m_s * (1 + slip);
 }
 
@@ -25,8 +25,8 @@ export function rimSpeed(/** @type {Condition} */ { slip, sled_speed_m_s }) {
  */
 
 /**
- * @typedef {{ names: string[], of: (row: any) => number }} Factor the levels of a condition by name, and the place of a
- *   row among them
+ * @typedef {{ names: string[], of: (row: Condition) => number }} Factor the levels of a condition by name, and the
+ *   place of a row among them
  */
 
 /**

@@ -15,14 +15,14 @@ import { capital, channelName, digits, errorWords, probability, shown, unitOf, w
 const USES = { fit: t`fitted runs`, holdout: t`held-out runs` };
 
 /** What an explanation says in plain words; its name where there are none. */
-function plain(/** @type {any} */ { name, summary }) {
+function plain(/** @type {{ name: string, summary?: string | null }} */ { name, summary }) {
   if (name === "none") return t`nothing is missing`;
   return summary ? translated(summary) : name === "not_in_library" ? t`a law that is not in the library` : words(name);
 }
 
 /**
  * The submitted model, where the shown one has effects that it has not and both were calibrated on the same runs.
- * @param {any[]} ledger
+ * @param {LedgerEntry[]} ledger
  * @param {number} id of the shown model
  */
 export function lineBefore(ledger, id) {
@@ -31,26 +31,25 @@ export function lineBefore(ledger, id) {
     now &&
     ledger.find(
       (line) =>
-        line.data_set === now.data_set &&
-        line !== now &&
-        line.effects.every((/** @type {string} */ e) => now.effects.includes(e)),
+        line.data_set === now.data_set && line !== now && line.effects.every((effect) => now.effects.includes(effect)),
     );
   return before && before.effects.length < now.effects.length ? before : null;
 }
 
 /**
  * The errors of the shown model, worst first: by what its effects bought where it has any, else over the noise.
- * @param {any} study
- * @param {any} model
+ * @param {Study} study
+ * @param {ToldModel} model
  * @returns {ErrorChange[]}
  */
 export function errorChanges(study, model) {
-  const now = study.ledger.find((/** @type {any} */ line) => line.calibration === model.id);
+  const now = study.ledger.find((line) => line.calibration === model.id);
   if (!now) return [];
   const before = lineBefore(study.ledger, model.id);
-  const changes = model.story.wrong.channels.flatMap((/** @type {any} */ { channel, use }) => {
-    const [own, old] = [now, before].map((line) => line?.error[use]?.[channel]);
-    if (!own) return [];
+  const changes = model.story.wrong.channels.flatMap(({ channel, use }) => {
+    const error = now.error[use]?.[channel];
+    const old = before?.error[use]?.[channel];
+    if (!error) return [];
     const { unit, scale } = shown(unitOf(channel));
     const sigma = study.fixed_sigma[channel];
     // A noise that was inferred with the misfit is no measure of it.
@@ -60,16 +59,14 @@ export function errorChanges(study, model) {
         channel,
         use,
         unit,
-        before: old && old.runs === own.runs ? old.rmse * scale : null,
-        now: own.rmse * scale,
+        before: old && old.runs === error.runs ? old.rmse * scale : null,
+        now: error.rmse * scale,
         noise,
       },
     ];
   });
   const gain = (/** @type {ErrorChange} */ c) => (c.before === null ? 0 : Math.log(c.before / c.now));
-  return before
-    ? changes.sort((/** @type {ErrorChange} */ a, /** @type {ErrorChange} */ b) => gain(b) - gain(a))
-    : changes;
+  return before ? changes.sort((a, b) => gain(b) - gain(a)) : changes;
 }
 
 /** `11.7 → 1.19 N`; a line does not break within it. */
@@ -82,7 +79,7 @@ const noiseWords = (/** @type {ErrorChange} */ { noise, unit }) =>
 
 /**
  * The headline of a model.
- * @param {any} model with its story
+ * @param {Pick<ToldModel, "story">} model
  * @param {ErrorChange[]} changes
  */
 export function headline({ story }, changes) {
@@ -91,11 +88,12 @@ export function headline({ story }, changes) {
   const error = first && t`${channelName(first.channel)} of ${USES[first.use]}: error ${changeWords(first)}`;
   const beside = first && first.noise !== null ? t`, noise ${noiseWords(first)}` : "";
   const added = missing.already_added;
-  const isCalm = wrong.channels.length > 0 && wrong.channels.every((/** @type {any} */ c) => c.is_within_noise);
+  const isCalm = wrong.channels.length > 0 && wrong.channels.every((c) => c.is_within_noise);
   if (added.length > 0 && first?.before != null) {
     const bought =
       added.length === 1 ? t`${error} with one more effect` : t`${error} with ${added.length} more effects`;
-    if (["named", "class", "not_in_library"].includes(missing.verdict)) return capital(t`${bought}; more is missing`);
+    if (["named", "class", "not_in_library"].includes(missing.verdict ?? ""))
+      return capital(t`${bought}; more is missing`);
     return capital(missing.verdict === "undecided" ? t`${bought}; what else is missing is undecided` : bought);
   }
   const found = {
@@ -106,11 +104,7 @@ export function headline({ story }, changes) {
     undecided: () => t`whether something is missing is undecided`,
     nothing_detectable: () =>
       isCalm ? t`the model explains the runs to within the noise` : t`nothing is missing that these data can show`,
-  }[
-    /** @type {"named" | "class" | "not_in_library" | "undecided" | "nothing_detectable" | "none"} */ (
-      missing.verdict ?? "none"
-    )
-  ];
+  }[missing.verdict ?? "none"];
   if (!found && !isCalm && first) {
     const noise = first.noise === null ? "" : t` (noise ${noiseWords(first)})`;
     const error = changeWords({ ...first, before: null });
@@ -130,28 +124,30 @@ export function headline({ story }, changes) {
 /**
  * The explanations to draw as bars: of an effect that was added and its rivals, else of the search; the last is all
  * others together.
- * @param {any} missing of a story
+ * @param {Pick<Story["missing"], "already_added" | "leading">} missing
  * @returns {Explanation[]}
  */
 export function explanations({ already_added: added, leading }) {
-  const judged = added.filter((/** @type {any} */ effect) => effect.probability !== null);
-  const all = judged.length > 0 ? judged.flatMap((/** @type {any} */ effect) => [effect, ...effect.rivals]) : leading;
-  const named = all.map((/** @type {any} */ effect) => ({
+  const judged = added.flatMap(({ probability, ...effect }) =>
+    probability === null || probability === undefined ? [] : [{ ...effect, probability }],
+  );
+  const all = judged.length > 0 ? judged.flatMap((effect) => [effect, ...effect.rivals]) : leading;
+  const named = all.map((effect) => ({
     name: effect.name,
     summary: plain(effect),
     probability: effect.probability,
   }));
   // Each of several effects was found by a separate search, so their probabilities do not sum to one.
-  const rest = 1 - named.reduce((/** @type {number} */ sum, /** @type {Explanation} */ e) => sum + e.probability, 0);
+  const rest = 1 - named.reduce((sum, explanation) => sum + explanation.probability, 0);
   return judged.length > 1 || rest < 1e-9 || named.length === 0
     ? named
     : [...named, { name: "", summary: t`all other explanations together`, probability: rest }];
 }
 
 /** `shear modulus 9.4 ± 0.6 mm`: the parameters of an added effect. */
-export function strengthWords(/** @type {any} */ { strengths }) {
+export function strengthWords(/** @type {Pick<Schemas["AddedEffect"], "strengths">} */ { strengths }) {
   return strengths
-    .map((/** @type {any} */ { name, unit, mean, sd }) => {
+    .map(({ name, unit, mean, sd }) => {
       const called = shownParameter({ name: name.split(".").slice(1).join(".") || name, unit });
       return `${called.name} ${meanAndSpread(called, mean, sd)}${called.unit === "" ? "" : ` ${called.unit}`}`;
     })

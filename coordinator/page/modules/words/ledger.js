@@ -4,7 +4,7 @@ import { t } from "../language/language.js";
 
 /**
  * @typedef {{ data_set: number, fitted_runs: number, held_out_runs: number }} Runs
- * @typedef {{ id: number, name: string, effects: string[], line: any & Runs }} LedgerLine
+ * @typedef {{ id: number, name: string, effects: string[], line: LedgerEntry }} LedgerLine
  */
 
 /**

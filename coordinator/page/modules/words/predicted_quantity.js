@@ -28,14 +28,11 @@ const HIDDEN = [
   "net_pull_n",
 ];
 
-/**
- * The quantities of a predicted run, or of a grid, that are shown, with their units in SI.
- * @returns {{ name: string, unit: string }[]}
- */
-export const shownQuantities = (/** @type {any} */ run) =>
-  run.quantities
-    .filter((/** @type {any} */ q) => !HIDDEN.includes(q.name))
-    .map((/** @type {any} */ q) => ({ name: q.name, unit: q.unit }));
+/** @typedef {{ name: string, unit: string }} Quantity unit: in SI */
+
+/** The quantities of a predicted run, or of a grid, that are shown. @returns {Quantity[]} */
+export const shownQuantities = (/** @type {{ quantities: Quantity[] }} */ { quantities }) =>
+  quantities.filter(({ name }) => !HIDDEN.includes(name)).map(({ name, unit }) => ({ name, unit }));
 
 /** The name of a quantity as words, without its unit. */
 export const quantityName = (/** @type {string} */ name) =>
@@ -50,7 +47,7 @@ export const channelOf = (/** @type {string} */ name) => CHANNELS[name] ?? null;
 
 /**
  * The quantities that a campaign measured, and those that follow from channels.
- * @param {{ name: string, unit: string }[]} quantities
+ * @param {Quantity[]} quantities
  * @param {{ channel: string }[]} rows of a comparison
  */
 export const measuredQuantities = (quantities, rows) =>
@@ -58,7 +55,7 @@ export const measuredQuantities = (quantities, rows) =>
 
 /**
  * A statement as the service reads it, in SI; null where it is not complete.
- * @param {{ name: string, unit: string } | undefined} quantity
+ * @param {Quantity | undefined} quantity
  * @param {string} sign
  * @param {number | null} limit in the unit that is shown
  */

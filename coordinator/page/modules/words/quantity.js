@@ -1,6 +1,6 @@
 // Quantities as people read them: their names, units and digits.
 
-import { decimal, t, translated } from "../language/language.js";
+import { decimal, t, translatedParameter } from "../language/language.js";
 import { shownUnit } from "../units.js";
 
 /** How a unit in SI is shown: in the units that a person chose. */
@@ -55,7 +55,7 @@ export function parameterName(name, unit) {
   const bare = unit && unit !== "1" ? name.replace(new RegExp(`_${spelt(unit)}(?=\\.[^.]*$|$)`), "") : name;
   return bare
     .split(".")
-    .map((part) => translated(words(part)))
+    .map((part) => translatedParameter(words(part)))
     .join(": ");
 }
 

@@ -4,14 +4,14 @@ import { t } from "../language/language.js";
 import { digits, duration } from "./quantity.js";
 
 /** How far a calibration has come: `stage 5, exponent 0.012, 2300 evaluations, about 12 s to go`. */
-export function progressWords(/** @type {any} */ progress) {
+export function progressWords(/** @type {Progress} */ progress) {
   const parts = [...positionWords(progress.position), t`${progress.evaluations} evaluations`];
-  if (progress.remaining_s !== null) parts.push(t`about ${duration(progress.remaining_s)} to go`);
+  if (typeof progress.remaining_s === "number") parts.push(t`about ${duration(progress.remaining_s)} to go`);
   return parts.join(", ");
 }
 
 /** Where an algorithm is, by its kind. */
-function positionWords(/** @type {any} */ position) {
+function positionWords(/** @type {Progress["position"]} */ position) {
   switch (position.kind) {
     case "sampler": {
       const climbs = position.stage > 0 && position.tempering_exponent < 1;

@@ -6,10 +6,10 @@ import { t } from "../language/language.js";
  * The error of a study's current model over the noise: on held-out runs where there are any. Studies without one stand
  * last.
  */
-const errorOf = (/** @type {any} */ { error }, /** @type {number} */ sign) =>
-  sign * ((error?.holdout ?? error?.fit)?.all?.rmse_fixed_sigma ?? sign * Infinity);
+const errorOf = (/** @type {Pick<ListedStudy, "error">} */ { error }, /** @type {number} */ sign) =>
+  sign * ((error?.holdout ?? error?.fit)?.all.rmse_fixed_sigma ?? sign * Infinity);
 
-/** @type {Record<string, (a: any, b: any) => number>} */
+/** @type {Record<string, (a: ListedStudy, b: ListedStudy) => number>} */
 export const ORDERS = {
   [t`newest first`]: (a, b) => b.id - a.id,
   [t`oldest first`]: (a, b) => a.id - b.id,
@@ -23,7 +23,7 @@ export const ORDERS = {
 const compared = (/** @type {number} */ a, /** @type {number} */ b) => (a === b ? 0 : a - b);
 
 /** What a study can be found by. */
-const textOf = (/** @type {any} */ study) =>
+const textOf = (/** @type {ListedStudy} */ study) =>
   [
     study.name,
     `study ${study.id}`,
@@ -42,7 +42,7 @@ const textOf = (/** @type {any} */ study) =>
 
 /**
  * The studies that have every word, in an order.
- * @param {any[]} studies
+ * @param {ListedStudy[]} studies
  * @param {string} text
  * @param {string} order a name of `ORDERS`
  */

@@ -13,7 +13,7 @@ const MOST_TIMES = 2;
 
 /** @typedef {{ question: string, level: "good" | "fair" | "poor", text: string }} Judgement */
 
-const named = (/** @type {any} */ parameter) => shownParameter(parameter).name;
+const named = (/** @type {{ name: string, unit: string }} */ parameter) => shownParameter(parameter).name;
 
 /** `a, b and c`, of many the first. */
 function list(/** @type {string[]} */ names) {
@@ -22,9 +22,9 @@ function list(/** @type {string[]} */ names) {
 }
 
 /**
- * @param {any} line of the error ledger; null of a fit without a posterior
- * @param {any} diagnostics
- * @param {any} wrong of the story
+ * @param {LedgerEntry | undefined} line of the error ledger; none of a fit without a posterior
+ * @param {Pick<Diagnostics, "channels" | "parameters">} diagnostics
+ * @param {Pick<Story["wrong"], "channels">} wrong of the story
  * @returns {Judgement[]}
  */
 export function judgements(line, diagnostics, wrong) {
@@ -34,11 +34,11 @@ export function judgements(line, diagnostics, wrong) {
     priors(diagnostics),
     informed(diagnostics),
     predictions(wrong),
-  ].filter((one) => one !== null);
+  ].filter((judgement) => judgement !== null);
 }
 
 /** @returns {Judgement | null} */
-function sampler(/** @type {any} */ line) {
+function sampler(/** @type {LedgerEntry | undefined} */ line) {
   if (!line || line.equilibrated === null || line.equilibrated === undefined) return null;
   const question = t`Did the sampler arrive?`;
   return line.equilibrated
@@ -47,24 +47,25 @@ function sampler(/** @type {any} */ line) {
 }
 
 /** @returns {Judgement | null} */
-function residuals(/** @type {any} */ { channels }, /** @type {any} */ wrong) {
-  const judged = channels.filter((/** @type {any} */ c) => c.chi_square?.p !== null && c.chi_square?.p !== undefined);
+function residuals(
+  /** @type {Pick<Diagnostics, "channels">} */ { channels },
+  /** @type {Pick<Story["wrong"], "channels">} */ wrong,
+) {
+  const judged = channels.flatMap(({ channel, chi_square: test, error_sd }) =>
+    typeof test?.p === "number" ? [{ channel, p: test.p, times: (error_sd ?? NaN) / noiseOf(wrong, channel) }] : [],
+  );
   if (judged.length === 0) return null;
   const question = t`Do the assumed errors explain the residuals?`;
-  const beyond = judged
-    .filter((/** @type {any} */ c) => c.chi_square.p < LEVEL)
-    .map((/** @type {any} */ c) => channelName(c.channel));
+  const beyond = judged.filter(({ p }) => p < LEVEL).map((c) => channelName(c.channel));
   // Errors that are inferred from the residuals explain them in any case.
-  const widened = judged
-    .map((/** @type {any} */ c) => ({ ...c, times: c.error_sd / noiseOf(wrong, c.channel) }))
-    .filter((/** @type {any} */ c) => c.times > MOST_TIMES);
+  const widened = judged.filter(({ times }) => times > MOST_TIMES);
   if (beyond.length === 0 && widened.length > 0) {
-    const most = Math.max(...widened.map((/** @type {any} */ c) => c.times));
-    const names = list(widened.map((/** @type {any} */ c) => channelName(c.channel)));
+    const times = Math.max(...widened.map((c) => c.times));
+    const names = list(widened.map((c) => channelName(c.channel)));
     return {
       question,
       level: "fair",
-      text: t`only with errors that are inferred from the residuals themselves, up to ${digits(most, 2)} times the
+      text: t`only with errors that are inferred from the residuals themselves, up to ${digits(times, 2)} times the
         noise: ${names}`,
     };
   }
@@ -74,18 +75,16 @@ function residuals(/** @type {any} */ { channels }, /** @type {any} */ wrong) {
 }
 
 /** The noise of a channel, which the errors of the story count in; not a number where it is not known. */
-function noiseOf(/** @type {any} */ { channels }, /** @type {string} */ channel) {
-  const own = channels.find((/** @type {any} */ c) => c.channel === channel && c.is_judged);
-  return own?.noise_sds ? own.rmse / own.noise_sds : NaN;
+function noiseOf(/** @type {Pick<Story["wrong"], "channels">} */ { channels }, /** @type {string} */ channel) {
+  const judged = channels.find((c) => c.channel === channel && c.is_judged);
+  return judged?.noise_sds ? judged.rmse / judged.noise_sds : NaN;
 }
 
 /** @returns {Judgement} */
-function priors(/** @type {any} */ { parameters }) {
+function priors(/** @type {Pick<Diagnostics, "parameters">} */ { parameters }) {
   const question = t`Do the data agree with the priors?`;
-  const conflict = parameters
-    .filter((/** @type {any} */ q) => q.conflict_p !== null && q.conflict_p < LEVEL)
-    .map(named);
-  const bound = parameters.filter((/** @type {any} */ q) => q.at_bound).map(named);
+  const conflict = parameters.filter((q) => (q.conflict_p ?? 1) < LEVEL).map(named);
+  const bound = parameters.filter((q) => q.at_bound).map(named);
   if (conflict.length > 0) return { question, level: "poor", text: t`they contradict the prior of ${list(conflict)}` };
   if (bound.length > 0)
     return {
@@ -100,11 +99,9 @@ function priors(/** @type {any} */ { parameters }) {
 }
 
 /** @returns {Judgement} */
-function informed(/** @type {any} */ { parameters }) {
+function informed(/** @type {Pick<Diagnostics, "parameters">} */ { parameters }) {
   const question = t`Do the data determine the parameters?`;
-  const little = parameters
-    .filter((/** @type {any} */ q) => q.contraction !== null && q.contraction < LITTLE)
-    .map(named);
+  const little = parameters.filter((q) => (q.contraction ?? 1) < LITTLE).map(named);
   return little.length === 0
     ? { question, level: "good", text: t`each is known better than before` }
     : {
@@ -118,18 +115,14 @@ function informed(/** @type {any} */ { parameters }) {
 }
 
 /** @returns {Judgement | null} */
-function predictions(/** @type {any} */ { channels }) {
+function predictions(/** @type {Pick<Story["wrong"], "channels">} */ { channels }) {
   if (channels.length === 0) return null;
-  const isHeldOut = channels.every((/** @type {any} */ c) => c.use === "holdout");
+  const isHeldOut = channels.every((c) => c.use === "holdout");
   const question = isHeldOut
     ? t`Does it predict runs that it has not seen?`
     : t`Does it predict runs that it has not seen? No run was held out.`;
-  const beyond = channels
-    .filter((/** @type {any} */ c) => c.is_judged && !c.is_within_noise)
-    .map((/** @type {any} */ c) => channelName(c.channel));
-  const open = channels
-    .filter((/** @type {any} */ c) => !c.is_judged)
-    .map((/** @type {any} */ c) => channelName(c.channel));
+  const beyond = channels.filter((c) => c.is_judged && !c.is_within_noise).map((c) => channelName(c.channel));
+  const open = channels.filter((c) => !c.is_judged).map((c) => channelName(c.channel));
   if (beyond.length > 0)
     return {
       question,

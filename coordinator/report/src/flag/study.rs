@@ -76,7 +76,7 @@ fn incomplete(study: &Study) -> Option<Flag> {
     let chi2 = record.chi2_best;
     let value = chi2.value.filter(|_| record.complete == Some(false))?;
     let text = format!(
-        "the search is incomplete: with the best explanation the residuals are still {} times as large as the assumed errors let expect (chi-square {} with {} degrees of freedom, {}): more is missing, or the assumed errors are too small",
+        "the search is incomplete: with the best explanation the residuals are still {} times as large as expected from the assumed errors (chi-square {} with {} degrees of freedom, {}): more is missing, or the assumed errors are too small",
         number::significant((value / chi2.degrees_of_freedom).sqrt(), 2),
         number::significant(value, 3),
         number::significant(chi2.degrees_of_freedom, 3),

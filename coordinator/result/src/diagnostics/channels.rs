@@ -64,7 +64,7 @@ impl ChiSquareTest {
         let (data, chi_square) = (self.data, number::significant(self.chi_square, 3));
         match self.p {
             Some(p) => format!(
-                "the {data} residuals are {} times as large as the assumed errors let expect (chi-square {chi_square} with {} degrees of freedom, {}): {}",
+                "the {data} residuals are {} times as large as expected from the assumed errors (chi-square {chi_square} with {} degrees of freedom, {}): {}",
                 number::significant((self.chi_square / self.degrees_of_freedom).sqrt(), 2),
                 number::significant(self.degrees_of_freedom, 3),
                 p_words(p),
@@ -277,7 +277,7 @@ mod tests {
         };
         assert_eq!(
             test(Some(1e-5)).words(),
-            "the 24 residuals are 1.7 times as large as the assumed errors let expect (chi-square 61.5 with 21.0 degrees of freedom, p = 1e-5): more than the assumed errors explain"
+            "the 24 residuals are 1.7 times as large as expected from the assumed errors (chi-square 61.5 with 21.0 degrees of freedom, p = 1e-5): more than the assumed errors explain"
         );
         for (p, ending) in [
             (Some(0.4), "p = 0.40): the assumed errors explain the misfit"),
