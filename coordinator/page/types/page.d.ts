@@ -48,13 +48,9 @@ type Use = "fit" | "holdout";
 /** The interface describes channel and use as texts of any kind. */
 type ChannelFailure = Schemas["ChannelFailure"] & { channel: Channel; use: Use };
 
-/** The interface does not tell yet which calibration an estimate is of. */
-type PointEstimate = Schemas["PointEstimate"] & { calibration?: number };
+type PointEstimate = Schemas["PointEstimate"];
 
-type Study = Omit<Schemas["StudyOverview"], "members" | "point_estimates"> & {
-  members: Member[];
-  point_estimates: PointEstimate[];
-};
+type Study = Omit<Schemas["StudyOverview"], "members"> & { members: Member[] };
 type ListedStudy = Schemas["StudyListItem"];
 /** A calibration of a study, a fit or a search; those that are models have a story when they are finished. */
 type Member = Schemas["StudyMember"] & { story?: Story | null };

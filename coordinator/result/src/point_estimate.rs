@@ -13,6 +13,9 @@ use crate::table::fixed_sigma::FixedSigmas;
 /// The result of a fit or a search.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct PointEstimate {
+    /// The calibration that it is of; 0 in results of earlier versions.
+    #[serde(default)]
+    pub calibration: i64,
     /// Name of the algorithm.
     #[schema(value_type = String)]
     pub algorithm: AlgorithmName,
@@ -113,6 +116,7 @@ impl FinishedCalibration {
         let fitted = || fitted(estimate, &self.spec.parameters);
         let name = |p: FittedParameter| p.free.name.clone();
         Some(PointEstimate {
+            calibration: self.row.id,
             algorithm: self.spec.algorithm.algorithm_name(),
             parameters: fitted().map(|p| (name(p), p.value)).collect(),
             sd: estimate
