@@ -83,6 +83,31 @@ pub struct NewEffect {
     pub effect: Option<toml::Table>,
 }
 
+/// `POST /v1/library`: a law that every later search tries, by its file or by the search that found it.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NewLibraryLaw {
+    /// The text of an effect file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub text: Option<String>,
+    /// The calibration whose search found the law.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<i64>,
+    /// The law of the search, by the name of its effect; without it, the one that the search would add.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub law: Option<String>,
+    /// The name that it gets.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+}
+
+/// `DELETE /v1/library/NAME`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct LibraryLawRemoved {
+    /// The law.
+    pub name: String,
+}
+
 /// A file with its name.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]

@@ -22,6 +22,7 @@ mod histories;
 mod import;
 mod laws;
 mod leases;
+mod library;
 mod likelihood;
 mod limit;
 mod mesh;

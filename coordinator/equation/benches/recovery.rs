@@ -1,4 +1,6 @@
-//! How often the formula of a generated law is found from its noisy curve. Arguments: `--seed S`, `--laws N`, `--details`.
+//! How often the formula of a generated law is found from its noisy curve. Arguments: `--seed S`, `--laws N`, `--details`, and
+//! `--cases FILE`, which writes the decidable cases with these answers as lines of JSON for other programs
+//! (`benchmark/rivals/formula.py`).
 //!
 //! The laws come from a generator that shares no code with the search: half of them are laws of the literature, half are random
 //! expressions. A law is decidable where its log Bayes factor over every shorter formula exceeds 3.
@@ -347,6 +349,30 @@ fn judge(case: &Case, library: &FormulaLibrary, share: f64) -> Judged {
     }
 }
 
+/// Writes a case with the answer as a line of JSON, for programs that are compared.
+fn line(case: &Case, share: f64, judged: &Judged) -> String {
+    let curve: Vec<f64> = case
+        .exact
+        .iter()
+        .zip(&case.noise)
+        .map(|(y, e)| y + share * case.size * e)
+        .collect();
+    format!(
+        "{{\"law\": {:?}, \"noise\": {share:?}, \"sd\": {:?}, \"points\": {:?}, \"values\": {curve:?}, \"exact\": {:?}, \
+         \"constants\": {}, \"in_class\": {}, \"simplest\": {}, \"members\": {}, \"probability\": {:?}, \"seconds\": {:?}}}\n",
+        case.name,
+        share * case.size,
+        case.points,
+        case.exact,
+        1 + case.truth.constants,
+        judged.is_in_class,
+        judged.is_simplest,
+        judged.members,
+        judged.probability,
+        judged.seconds,
+    )
+}
+
 fn report(title: &str, judged: &[&Judged]) {
     let share = |test: &dyn Fn(&Judged) -> bool| {
         judged.iter().filter(|j| test(j)).count() as f64 / judged.len() as f64
@@ -443,16 +469,21 @@ fn main() {
     let library = FormulaLibrary::new(7, false);
     println!("formulas by size: {:?}", library.counts());
     let begin = Instant::now();
-    let judged: Vec<[Judged; 2]> = (0..laws + laws / 2)
+    let judged: Vec<(Case, [Judged; 2])> = (0..laws + laws / 2)
         .into_par_iter()
         .map(|index| {
             let mut random = Random((seed * 1_000_003 + index) as u64);
             let case = (0..).find_map(|_| Case::draw(&mut random, &library)).unwrap();
-            [0.01, 0.1].map(|share| judge(&case, &library, share))
+            let both = [0.01, 0.1].map(|share| judge(&case, &library, share));
+            (case, both)
         })
         .collect();
+    let mut lines = Vec::new();
     for (k, share) in [0.01, 0.1].into_iter().enumerate() {
-        let judged: Vec<&Judged> = judged.iter().map(|both| &both[k]).collect();
+        let of_noise = || judged.iter().map(|(case, both)| (case, &both[k]));
+        let decidable_cases = of_noise().filter(|(_, judged)| judged.is_decidable).take(laws);
+        lines.extend(decidable_cases.map(|(case, judged)| line(case, share, judged)));
+        let judged: Vec<&Judged> = of_noise().map(|(_, judged)| judged).collect();
         if details {
             for j in judged.iter().filter(|j| !j.is_simplest) {
                 println!(
@@ -474,5 +505,9 @@ fn main() {
             "  {seconds:.2} s a search; {:.0} s in all",
             begin.elapsed().as_secs_f64()
         );
+    }
+    let file = arguments.iter().position(|a| a == "--cases");
+    if let Some(file) = file.and_then(|i| arguments.get(i + 1)) {
+        std::fs::write(file, lines.concat()).unwrap();
     }
 }

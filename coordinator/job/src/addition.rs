@@ -72,7 +72,10 @@ impl Job {
             }
         }
         for (file, text) in &addition.files {
-            if !job.files.insert(file, Arc::clone(text)) {
+            // A candidate's file is there before the model has its effect.
+            let is_candidate = job.candidate_files.contains(file)
+                && job.files.text(file).is_some_and(|there| there == text.text);
+            if !is_candidate && !job.files.insert(file, Arc::clone(text)) {
                 return Err(fail(format!("file \"{file}\" exists already")));
             }
         }
@@ -102,7 +105,9 @@ impl Job {
         let is_about = |key: &str| is_named(key.split_once('.').map_or(key, |(effect, _)| effect));
         job.table.retain(|key, _| !is_about(key));
         job.priors.retain(|entry| !is_about(&entry.name));
-        job.files.retain(|file| !is_dropped(file));
+        job.files.retain(|file| {
+            self.candidate_files.iter().any(|candidate| candidate == file) || !is_dropped(file)
+        });
         job.read_model()
             .map_err(|message| FileError::whole(name, message))?;
         Ok(job)

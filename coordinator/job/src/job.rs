@@ -56,6 +56,8 @@ pub struct Job {
     pub decision: Option<Decision>,
     /// Priors of candidates of a search, by the full names of their parameters: `[discovery.priors]`.
     pub candidate_priors: BTreeMap<String, toml::Value>,
+    /// Names of the files whose effects a search tries beside the catalogue: `[discovery] candidate_files`.
+    pub candidate_files: Vec<String>,
     /// The texts of the files that the job names; empty until [`Job::beside`] gives them.
     pub files: NamedFiles,
     /// Effect files of the other models.
@@ -191,6 +193,7 @@ impl Job {
             discovery,
             decision,
             candidate_priors: candidate_priors::by_name(&raw.discovery.priors),
+            candidate_files: raw.discovery.candidate_files,
             files: NamedFiles::default(),
             also_named: also_named.cloned().collect(),
         };
@@ -253,6 +256,7 @@ impl Job {
         let effect_files = self.model.effect_files.iter();
         let mut named: Vec<String> = effect_files
             .chain(&self.also_named)
+            .chain(&self.candidate_files)
             .cloned()
             .chain(posterior)
             .collect();

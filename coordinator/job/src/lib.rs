@@ -52,7 +52,7 @@ pub use model_switch::{MODEL_SWITCHES, ModelSwitch, SettingValue};
 pub use named_files::{NamedFile, NamedFiles};
 pub use plain_parameter::{PLAIN_PARAMETERS, PlainParameter};
 pub use plausibility::{Question, Unanswered, check_accepted, questions};
-pub use service_effect::ServiceEffect;
+pub use service_effect::{ServiceEffect, effect_with_origin};
 pub use spec::{EffectsChanged, PREDICTION_DRAWS, Spec};
 pub use table::algorithm_settings::{AlgorithmName, AlgorithmSettings, AlgorithmSettingsError};
 pub use table::candidate_priors::candidate_priors;
@@ -63,6 +63,6 @@ pub use table::prior_entry::{FreeParameter, PriorEntry, check_effect, free_param
 pub use table::prior_entry_error::PriorEntryError;
 pub use text::{
     accepting_job, continued_job, earlier_search, extended_job, model_job, point_job, searched_job,
-    searched_model, validation_job, with_service_effects, without_effects, without_metamodel,
-    without_service_effects,
+    searched_model, validation_job, with_candidates, with_service_effects, without_effects,
+    without_metamodel, without_service_effects,
 };

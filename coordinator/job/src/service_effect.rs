@@ -2,6 +2,9 @@
 
 use std::sync::Arc;
 
+use shared::file::FileError;
+use toml_edit::{DocumentMut, TomlError, value};
+
 use crate::named_files::NamedFile;
 
 /// An effect of a service's catalogue, as a job lists it and as a file.
@@ -29,4 +32,24 @@ impl ServiceEffect {
     pub(crate) fn named_file(&self) -> (String, Arc<NamedFile>) {
         (self.file.clone(), NamedFile::new(self.text.clone()))
     }
+}
+
+/// Returns an effect file with another name or another source; everything else stays as it is written.
+///
+/// # Errors
+/// [`FileError`] if the text is no TOML.
+pub fn effect_with_origin(
+    file: &str,
+    text: &str,
+    name: Option<&str>,
+    source: Option<&str>,
+) -> Result<String, FileError> {
+    let document = text.parse();
+    let mut document: DocumentMut = document.map_err(|e: TomlError| FileError::whole(file, e.to_string()))?;
+    for (key, written) in [("name", name), ("source", source)] {
+        if let Some(written) = written {
+            document[key] = value(written);
+        }
+    }
+    Ok(document.to_string())
 }

@@ -162,6 +162,9 @@ pub enum Extension {
 pub struct JudgedEffect {
     /// The effect, `EFFECT.WHEEL` on one wheel of several; or `none`, or `not_in_library`.
     pub name: String,
+    /// What the effect of one of the job's candidate files does, in a line; absent for the catalogue's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub summary: Option<String>,
     /// Log evidence over that of the searched model, with the stated prior of its strength \[nats\].
     pub log_bayes_factor: f64,
     /// Distance of the fitted strength from the middle of its prior, in standard deviations; null for `none` and `not_in_library`.

@@ -1,5 +1,6 @@
 //! The candidate effects of the library, each as an addition to a job.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -145,7 +146,8 @@ pub type LibraryEffect = (CandidateEffect, Vec<FreeParameter>);
 /// Lists the candidate effects of the library for an experiment.
 ///
 /// First every effect of the catalogue that the job does not have, in the order of the catalogue; then, where fitted runs have
-/// several wheels, each on each of these wheels alone; then those of the shear displacement with that on the nodes of the soil.
+/// several wheels, each on each of these wheels alone; then the effects of the job's candidate files; then those of the shear
+/// displacement with that on the nodes of the soil.
 /// Checked by `tests::of_several_wheels_each_may_have_an_effect_alone` and
 /// `tests::an_effect_of_the_displacement_may_be_on_the_nodes`.
 ///
@@ -193,6 +195,16 @@ pub fn library(
             Err(reason) => excluded.push((candidate.name, reason)),
         }
     }
+    for (candidate, effect) in candidates_in_files(job, &existing) {
+        let checked = match acts(&effect, None) {
+            true => check(job, experiment, &candidate.extension, &effect, None),
+            false => Err(ExclusionReason::AbsentEverywhere),
+        };
+        match checked {
+            Ok(parameters) => candidates.push((candidate, parameters)),
+            Err(reason) => excluded.push((candidate.name, reason)),
+        }
+    }
     for on_nodes in on_nodes {
         let candidate = named(on_nodes.name());
         // An effect that the model cannot have is excluded above already.
@@ -201,6 +213,24 @@ pub fn library(
         }
     }
     (candidates, excluded)
+}
+
+/// Lists the candidates that come with the job as files, except those that its model has.
+fn candidates_in_files<'a>(
+    job: &'a Job,
+    existing: &'a BTreeSet<String>,
+) -> impl Iterator<Item = (CandidateEffect, Effect)> + 'a {
+    let read = |file: &String| {
+        let effect = job.files.effect(file)?.ok()?;
+        let extension = Extension::File {
+            name: file.clone(),
+            text: effect.text.clone(),
+        };
+        let name = effect.name.clone();
+        Some((CandidateEffect { name, extension }, effect))
+    };
+    let candidates = job.candidate_files.iter().filter_map(read);
+    candidates.filter(|(candidate, _)| !existing.contains(&candidate.name))
 }
 
 /// Returns whether an effect changes nothing but the radius of the wheel.
@@ -219,6 +249,16 @@ pub(super) fn candidate_of(name: &str) -> Option<(&'static Effect, CandidateEffe
     };
     let effect = find(effect)?;
     Some((effect, candidate(effect, wheel)))
+}
+
+impl CandidateEffect {
+    /// Returns its effect: that of the catalogue, or that of its file; `None` for a parameter or a setting of the model.
+    pub(super) fn effect(&self) -> Option<Cow<'static, Effect>> {
+        match &self.extension {
+            Extension::File { text, .. } => Effect::read(text).ok().map(Cow::Owned),
+            _ => candidate_of(&self.name).map(|(effect, _)| Cow::Borrowed(effect)),
+        }
+    }
 }
 
 fn candidate(effect: &Effect, wheel: Option<&str>) -> CandidateEffect {

@@ -14,7 +14,7 @@ use record::{
 use shared::channel::Channel;
 
 use super::bench_measurement;
-use super::candidate::{CandidateEffect, candidate_of};
+use super::candidate::CandidateEffect;
 use super::curves::curves;
 use super::entry::{CandidateEntry, LawEntry};
 use super::law::curve;
@@ -201,6 +201,7 @@ fn effects(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedEffect> 
         let entry = effect.candidate.and_then(|k| models.entry(k));
         JudgedEffect {
             name: entry.map_or(NONE.to_owned(), |entry| entry.effect.name.clone()),
+            summary: entry.and_then(|entry| file_summary(&entry.effect)),
             log_bayes_factor: effect.stated_log_bayes_factor,
             prior_sds: entry
                 .filter(|entry| !entry.candidate.strengths.is_empty())
@@ -224,6 +225,7 @@ fn effects(models: &SearchModels, conclusion: &Conclusion) -> Vec<JudgedEffect> 
     if let Some((log_bayes_factor, probability)) = conclusion.not_in_library {
         effects.push(JudgedEffect {
             name: NOT_IN_LIBRARY.to_owned(),
+            summary: None,
             log_bayes_factor,
             prior_sds: None,
             probability,
@@ -267,6 +269,12 @@ fn method(method: EvidenceMethod) -> &'static str {
     }
 }
 
+/// Returns what a candidate of a file does, in a line; `None` for the catalogue's and the model's.
+fn file_summary(candidate: &CandidateEffect) -> Option<String> {
+    let is_in_file = matches!(candidate.extension, Extension::File { .. });
+    is_in_file.then(|| candidate.effect().map(|effect| effect.summary.clone()))?
+}
+
 /// Returns the prior of a candidate's strength: the one under `[discovery.priors]`, otherwise that of the catalogue.
 fn strength_prior(candidate: &CandidateEffect, models: &SearchModels) -> Option<String> {
     let stated = &models.job.candidate_priors;
@@ -276,7 +284,7 @@ fn strength_prior(candidate: &CandidateEffect, models: &SearchModels) -> Option<
             .map_or(plain.prior.to_owned(), ToString::to_string);
         return Some(format!("{} = {prior}", plain.name));
     }
-    let (effect, _) = candidate_of(&candidate.name)?;
+    let effect = candidate.effect()?;
     let strength = effect.parameters.iter().find(|p| p.neutral.is_some())?;
     let name = format!("{}.{}", effect.name, strength.name);
     let prior = stated.get(&name).unwrap_or(&strength.prior);

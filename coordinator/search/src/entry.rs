@@ -8,7 +8,7 @@ use record::{Extension, NotTried};
 use shared::model::ModelKind;
 use shared::parameters::{SPATIAL, model_parameters};
 
-use super::candidate::{CandidateEffect, candidate_of, spec, with_extensions};
+use super::candidate::{CandidateEffect, spec, with_extensions};
 use super::law::dependence::Dependence;
 use super::law::form::LawForm;
 
@@ -49,7 +49,7 @@ impl LawEntry {
 }
 
 impl CandidateEntry {
-    /// Makes the candidate of an effect of the catalogue.
+    /// Makes the candidate of an effect of the catalogue or of a file of the job.
     ///
     /// # Arguments
     /// - `parameters`: the free parameters of the model with the effect.
@@ -61,10 +61,10 @@ impl CandidateEntry {
         parameters: Vec<FreeParameter>,
         base: &Spec,
     ) -> Option<Self> {
-        let (effect, _) = candidate_of(&candidate.name)?;
+        let effect = candidate.effect()?;
         let is_known = |parameter: &FreeParameter| base.parameters.iter().any(|p| p.name == parameter.name);
         let free = parameters.into_iter().filter(|parameter| !is_known(parameter));
-        Self::new(candidate, effect, free.collect(), false)
+        Self::new(candidate, &effect, free.collect(), false)
     }
 
     /// Makes the candidate that frees a parameter of the model itself; `None` if the job does not hold it fixed.

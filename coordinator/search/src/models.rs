@@ -17,8 +17,7 @@ use shared::model::{EffectSet, ExternalModel, ModelKind, ModelVariant, RunCondit
 use shared::outcome::Observables;
 
 use super::candidate::{
-    CandidateEffect, EXPERIMENT, ExclusionReason, JOB, LibraryEffect, candidate_of, library, spec,
-    with_extensions,
+    CandidateEffect, EXPERIMENT, ExclusionReason, JOB, LibraryEffect, library, spec, with_extensions,
 };
 use super::design;
 use super::entry::{CandidateEntry, LawEntry};
@@ -101,7 +100,8 @@ impl SearchModels {
         let (untried, assumed) = untried(&job, &experiment, files, base.model.is_smooth(), &excluded)?;
         let external = base.model.external.iter();
         let mut not_tried: Vec<NotTried> = external.flat_map(out_of_reach).collect();
-        not_tried.extend(absent(&excluded));
+        not_tried.extend(absent(&job, &excluded));
+        not_tried.extend(unfit_files(&job, &excluded));
         let mut library = library_entries(&job, &base, effects, untried, &mut not_tried);
         exclude_on_nodes(&mut library);
         set_families(&mut library);
@@ -409,8 +409,8 @@ fn laws(job: &Job, base: &Spec) -> Result<Vec<LawEntry>, FileError> {
 /// it would move to the nodes, too.
 fn exclude_on_nodes(entries: &mut [CandidateEntry]) {
     let uses_displacement = |entry: &&CandidateEntry| {
-        let effect = candidate_of(&entry.effect.name);
-        effect.is_some_and(|(effect, _)| effect.uses().contains(Variable::J))
+        let effect = entry.effect.effect();
+        effect.is_some_and(|effect| effect.uses().contains(Variable::J))
     };
     let names = entries
         .iter()
@@ -426,23 +426,53 @@ fn exclude_on_nodes(entries: &mut [CandidateEntry]) {
 }
 
 /// Lists the effects that change nothing at the conditions of any fitted run.
-fn absent(excluded: &[(String, ExclusionReason)]) -> impl Iterator<Item = NotTried> {
+fn absent<'a>(
+    job: &'a Job,
+    excluded: &'a [(String, ExclusionReason)],
+) -> impl Iterator<Item = NotTried> + 'a {
     let everywhere = excluded.iter().filter(|(name, reason)| {
         let is_on_one_wheel = name.contains('.');
         matches!(reason, ExclusionReason::AbsentEverywhere) && !is_on_one_wheel
     });
-    everywhere.map(|(name, reason)| NotTried {
-        name: name.clone(),
-        why: reason.to_string(),
-        needs: format!("{}{}", NotTried::RUNS, where_it_acts(name)),
+    everywhere.filter_map(|(name, reason)| {
+        let effect = find(name).cloned();
+        let effect = effect.or_else(|| effects_in_files(job).find(|effect| effect.name == *name))?;
+        Some(NotTried {
+            name: name.clone(),
+            why: reason.to_string(),
+            needs: format!("{}{}", NotTried::RUNS, where_it_acts(&effect)),
+        })
     })
 }
 
-/// Describes the simplest conditions in which an effect of the catalogue changes something.
-fn where_it_acts(name: &str) -> String {
+/// Lists the effects of the job's candidate files.
+fn effects_in_files(job: &Job) -> impl Iterator<Item = Effect> {
+    job.candidate_files
+        .iter()
+        .filter_map(|file| job.files.effect(file)?.ok())
+}
+
+/// Lists the effects of the job's candidate files that the model cannot have.
+fn unfit_files<'a>(
+    job: &'a Job,
+    excluded: &'a [(String, ExclusionReason)],
+) -> impl Iterator<Item = NotTried> + 'a {
+    let of_files: BTreeSet<String> = effects_in_files(job).map(|effect| effect.name).collect();
+    let unfit = excluded.iter().filter(move |(name, reason)| {
+        of_files.contains(name) && !matches!(reason, ExclusionReason::AbsentEverywhere)
+    });
+    unfit.map(|(name, reason)| NotTried {
+        name: name.clone(),
+        why: reason.to_string(),
+        needs: NotTried::OUR_MODEL.to_owned(),
+    })
+}
+
+/// Describes the simplest conditions in which an effect changes something.
+fn where_it_acts(effect: &Effect) -> String {
     const SLIP: f64 = 0.3;
     const ANGLE_RAD: f64 = 0.26;
-    let acts = |slip: f64, angle: f64| find(name).is_some_and(|e| !e.is_absent_at(&variables(slip, angle)));
+    let acts = |slip: f64, angle: f64| !effect.is_absent_at(&variables(slip, angle));
     let straight = [("in drive", SLIP), ("in skid", -SLIP)];
     let mut conditions: Vec<String> = straight
         .into_iter()

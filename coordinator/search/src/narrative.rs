@@ -91,7 +91,7 @@ fn claimed_replacement(models: &SearchModels, conclusion: &Conclusion) -> Option
     Some(format!(
         "{name} is missing in the place of {}: {} ({}, {:.1} nats over {})",
         models.reductions[replacement.reduction].effect,
-        summary(&name),
+        summary(models, &name),
         probability(replacement.probability),
         replacement.log_bayes_factor,
         models.base.model_words(),
@@ -115,10 +115,13 @@ fn better_replacement(models: &SearchModels, conclusion: &Conclusion) -> String 
 }
 
 /// Returns the sentence that states the assumption of a candidate; empty for a law outside the catalogue.
-fn summary(name: &str) -> &'static str {
-    let plain = PlainParameter::find(name).map(|plain| plain.summary);
-    let switch = || ModelSwitch::find(name).map(|switch| switch.summary);
-    let effect = || candidate_of(name).map(|(effect, _)| effect.summary.as_str());
+fn summary(models: &SearchModels, name: &str) -> String {
+    let plain = PlainParameter::find(name).map(|plain| plain.summary.to_owned());
+    let switch = || ModelSwitch::find(name).map(|switch| switch.summary.to_owned());
+    let effect = || {
+        let entry = models.library.iter().find(|entry| entry.effect.name == name)?;
+        Some(entry.effect.effect()?.summary.clone())
+    };
     plain.or_else(switch).or_else(effect).unwrap_or_default()
 }
 
@@ -262,10 +265,10 @@ fn verdict(
                 );
             }
             let claim = match (PlainParameter::find(&name), ModelSwitch::find(&name)) {
-                (Some(_), _) => format!("{name} is missing: {}", summary(&name)),
+                (Some(_), _) => format!("{name} is missing: {}", summary(models, &name)),
                 (None, Some(switch)) => format!("{} fits: {}", switch.line(), switch.summary),
                 (None, None) => {
-                    let summary = summary(&name);
+                    let summary = summary(models, &name);
                     let place =
                         EffectOnNodes::find(&name).map_or("", |_| ", counted where the soil is sheared");
                     let dimension = judged.and_then(|judged| dimension(models, &name, judged));
@@ -421,6 +424,7 @@ mod tests {
     fn effect(name: &str, probability: f64, in_credible_set: bool) -> JudgedEffect {
         JudgedEffect {
             name: name.into(),
+            summary: None,
             log_bayes_factor: 1.0,
             prior_sds: None,
             probability,

@@ -12,6 +12,7 @@ mod growth;
 mod import;
 mod incoming;
 mod job_on_disk;
+mod library;
 mod output;
 mod place;
 mod predict;
@@ -62,6 +63,7 @@ pub async fn execute(command: CoordinatorCommand) -> anyhow::Result<()> {
         CoordinatorCommand::Extend(extend) => growth::extend(&extend).await,
         CoordinatorCommand::AddRuns(runs) => growth::add_runs(&runs).await,
         CoordinatorCommand::Effects(config) => effects::effects(&config).await,
+        CoordinatorCommand::Library(command) => library::library(&command).await,
         CoordinatorCommand::Archive(study) => verbs::archive(&study, "archive").await,
         CoordinatorCommand::Restore(study) => verbs::archive(&study, "restore").await,
         CoordinatorCommand::Delete(study) => verbs::delete(&study).await,

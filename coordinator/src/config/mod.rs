@@ -2,6 +2,7 @@
 //!
 //! # Layout
 //! - `client`: what a service asks for.
+//! - `law`: arguments of `coordinator library`.
 //! - `library`: where libraries that belong to the program lie.
 //! - `model`: models that are not ours. `target`: which calibration, and where.
 //! - `predict`: arguments of `coordinator predict`, `decide`, `watch` and `stream`.
@@ -9,6 +10,7 @@
 //! - `store`: where a store is kept, copies of it, its tokens.
 
 mod client;
+mod law;
 mod library;
 mod model;
 mod predict;
@@ -26,6 +28,7 @@ use crate::embedded::WorkerConfig;
 use crate::schema::FileKind;
 
 pub use client::ClientArguments;
+pub use law::{AddLawArguments, LibraryCommand};
 pub use library::beside_program;
 pub use model::ModelArguments;
 pub use predict::{DecideArguments, PredictArguments, PredictionFormat, StreamArguments, WatchArguments};
@@ -95,6 +98,9 @@ pub enum CoordinatorCommand {
     AddRuns(AddRunsArguments),
     /// List the effects of the catalogue, or show one: its file and its influence on the measured quantities.
     Effects(EffectsArguments),
+    /// Add, list and remove laws that every later search of a service tries.
+    #[command(subcommand)]
+    Library(LibraryCommand),
     /// Take a study out of the lists of a service; its results stay.
     Archive(StudyArguments),
     /// Take an archived study back into the lists.

@@ -2,14 +2,15 @@
 //!
 //! # Layout
 //! - here: [`EffectCard`], an effect in words and numbers.
+//! - [`library`]: laws that joined the library, and the studies that tried them.
 //! - [`signature`]: what it changes in what a rig measures, as a worker computes it.
 
+pub mod library;
 pub mod signature;
 
 use formula::effect::Mechanism;
 use formula::{Effect, Hook, Parameter};
 use serde::{Deserialize, Serialize};
-use shared::file::number;
 use utoipa::ToSchema;
 
 /// An effect in words and numbers.
@@ -153,53 +154,16 @@ impl ParameterCard {
             name: parameter.name.clone(),
             unit: parameter.unit.clone(),
             neutral: parameter.neutral,
-            typical: parameter.neutral.and(shown_at(parameter)),
+            typical: parameter.neutral.and(parameter.shown_at()),
             prior: serde_json::to_value(&parameter.prior).unwrap_or_default(),
         }
     }
-}
-
-/// Returns the value at which a strength is shown: the file's, or else one scale of its prior.
-fn shown_at(parameter: &Parameter) -> Option<f64> {
-    let prior = &parameter.prior;
-    let pair = |key: &str| -> Option<[f64; 2]> {
-        let [a, b] = prior.get(key)?.as_array()?.as_slice() else {
-            return None;
-        };
-        Some([number(a)?, number(b)?])
-    };
-    let prior_centre = || {
-        let uniform = || pair("uniform").map(|[a, b]| f64::midpoint(a, b));
-        let loguniform = || pair("loguniform").map(|[a, b]| (a * b).sqrt());
-        let normal = || pair("normal").map(|[mean, sd]| mean + sd);
-        let lognormal = || pair("lognormal").map(|[median, _]| median);
-        let half = || number(prior.get("half_normal")?);
-        let table = uniform().or_else(loguniform).or_else(normal);
-        table.or_else(lognormal).or_else(half)
-    };
-    parameter.typical.or_else(|| number(prior)).or_else(prior_centre)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use formula::catalogue::catalogue;
-
-    #[test]
-    fn every_strength_of_the_catalogue_is_shown_at_a_value_that_is_not_neutral() {
-        for effect in catalogue() {
-            for parameter in effect.parameters.iter().filter(|p| p.neutral.is_some()) {
-                let shown = shown_at(parameter).unwrap();
-                let neutral = parameter.neutral.unwrap();
-                assert!(
-                    (shown - neutral).abs() > 0.0,
-                    "{}.{}",
-                    effect.name,
-                    parameter.name
-                );
-            }
-        }
-    }
 
     #[test]
     fn every_group_has_effects() {

@@ -10,7 +10,6 @@ use shared::model::effects::parameter_name;
 use shared::model::{EffectSet, EffectText, ModelKind, ModelSettings, ModelVariant};
 use utoipa::ToSchema;
 
-use super::shown_at;
 use crate::embedded::Evaluate;
 
 /// The shown channels with their units.
@@ -76,7 +75,7 @@ impl HeldParameter {
     fn shown(parameter: &formula::Parameter) -> Option<Self> {
         Some(HeldParameter {
             name: parameter.name.clone(),
-            value: shown_at(parameter)?,
+            value: parameter.shown_at()?,
             unit: parameter.unit.clone(),
         })
     }
@@ -133,7 +132,7 @@ pub fn signature(effect: &Effect, kind: ModelKind) -> Result<Signature, String> 
     let base = reference.simulate(None)?;
     let mut shown: Vec<StrengthSignature> = Vec::new();
     for parameter in effect.parameters.iter().filter(|p| p.neutral.is_some()) {
-        let Some(value) = shown_at(parameter) else {
+        let Some(value) = parameter.shown_at() else {
             continue;
         };
         let with = reference.simulate(Some((&parameter.name, value)))?;
@@ -282,7 +281,7 @@ impl<'a> Reference<'a> {
             let value = match (strength, parameter.neutral) {
                 (Some((name, value)), Some(_)) if name == parameter.name => Some(value),
                 (_, Some(neutral)) => Some(neutral),
-                (_, None) => shown_at(parameter),
+                (_, None) => parameter.shown_at(),
             };
             let name = self.effect.map(|e| parameter_name(e, parameter, None));
             if let (Some(name), Some(value)) = (name, value) {

@@ -4,7 +4,7 @@ use utoipa_axum::router::OpenApiRouter;
 
 use super::{
     calibrations, campaign, document, effects, events, examples, experiments, growth, import, job_check,
-    predictions, studies, work,
+    library, predictions, studies, work,
 };
 use crate::service::Service;
 
@@ -14,6 +14,7 @@ pub(super) fn api() -> OpenApiRouter<Service> {
         .merge(experiments::routes())
         .merge(examples::routes())
         .merge(effects::routes())
+        .merge(library::routes())
         .merge(import::routes())
         .merge(calibrations::routes())
         .merge(job_check::routes())

@@ -26,6 +26,7 @@ mod host;
 mod import;
 mod in_process;
 mod job_check;
+mod library;
 mod list_page;
 mod metrics;
 mod page;

@@ -87,7 +87,7 @@ pub(super) fn request_example(operation: &str) -> Option<Value> {
         "decide" => json!({ "file": DECISION }),
         "add_runs" | "follow" => json!({ "runs": FURTHER_RUNS }),
         "stream" => json!({ "recording": RECORDING }),
-        "add_effect" => json!({ "text": EFFECT }),
+        "add_effect" | "add_to_library" => json!({ "text": EFFECT }),
         "import_table" => json!({"name": "sand.csv", "content_base64": TABLE_BASE64, "map": MAP}),
         "guess_import_map" => json!({"name": "sand.csv", "content_base64": TABLE_BASE64, "sheet": null}),
         "exchange_work" => json!({

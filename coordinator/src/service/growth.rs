@@ -15,7 +15,7 @@ use super::stored_calibration::{FILES, has_posterior};
 use super::submission::role_of;
 use crate::study::{Lineage, StudyStep, most_probable};
 use farm::calibration::{Calibration, CalibrationIdentity};
-use job::{Job, Spec, continued_job, without_effects};
+use job::{Job, Spec, continued_job, with_candidates, without_effects};
 use record::{CalibrationRow, Change, Extension, Membership, addition_name};
 use search::candidate::extended;
 use store::NewCalibrationRow;
@@ -108,6 +108,7 @@ impl Service {
             Some(search) if !matches!(search.state, Failed | Cancelled) => Ok(created(search)),
             _ => {
                 let job = continued_job(FILES[0], &row.job)?;
+                let job = with_candidates(FILES[0], &job, &self.library_files().await?)?;
                 let name = format!("{} (discovery)", row.name);
                 let files = self.experiment(row.experiment).await?;
                 let search = self

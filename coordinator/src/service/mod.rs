@@ -7,6 +7,7 @@
 //! - `background`: computations beside the threads that answer requests.
 //! - `submission`: new experiments and calibrations.
 //! - `effects`: effects that users add to the catalogue, and jobs that name them.
+//! - `library`: laws that every later search tries, with what the studies say of them.
 //! - `removal`: archives and deletes studies. `withdrawal`: takes back what was added to a study, and keeps what people say of it.
 //! - `announcement`: posts to web hooks.
 //! - `growth`: additions to an existing study. `what_if`: studies without some runs.
@@ -31,6 +32,7 @@ mod follow;
 mod growth;
 mod handle;
 mod job_check;
+mod library;
 mod predictions;
 pub(crate) mod recording;
 mod recovery;

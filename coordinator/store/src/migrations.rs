@@ -43,6 +43,7 @@ const FILES: &[(i64, &str, &str)] = &[
     file!(23, "no metamodel", "0023_no_metamodel.sql"),
     file!(24, "study details", "0024_study_details.sql"),
     file!(25, "checksums", "0025_checksums.sql"),
+    file!(26, "library", "0026_library.sql"),
 ];
 
 /// The files of `migrations/postgres/`. A server starts with the tables of version 19; later migrations have a file in each folder.
@@ -54,6 +55,7 @@ const SERVER_FILES: &[(i64, &str, &str)] = &[
     file!(23, "no metamodel", "postgres/0023_no_metamodel.sql"),
     file!(24, "study details", "postgres/0024_study_details.sql"),
     file!(25, "checksums", "postgres/0025_checksums.sql"),
+    file!(26, "library", "postgres/0026_library.sql"),
 ];
 
 /// The version of the tables that this program writes.

@@ -325,6 +325,19 @@ impl Reader {
         record.map(read).transpose()
     }
 
+    /// Reads the records of all searches whose texts contain a name, by search.
+    pub async fn discoveries_with(&self, name: &str) -> Result<Vec<(i64, Discovery)>, StoreError> {
+        let rows = query_as(
+            "SELECT calibration, record FROM discoveries WHERE record LIKE '%' || ? || '%' ORDER BY calibration",
+        );
+        let rows: Vec<(i64, String)> = rows.bind(format!("\"{name}\"")).fetch_all(&self.pool).await?;
+        let read = |(search, json): (i64, String)| {
+            let corrupt = |e| StoreError::Corrupt(format!("record of search {search}: {e}"));
+            Ok((search, serde_json::from_str(&json).map_err(corrupt)?))
+        };
+        rows.into_iter().map(read).collect()
+    }
+
     /// Reads the final draws of a calibration. The first is the most probable particle; a fit without draws has only this one.
     pub async fn predictions(&self, calibration: i64) -> Result<Vec<Prediction>, StoreError> {
         let rows = query(

@@ -20,6 +20,7 @@ use super::insert::{
     NewCalibrationRow, NewStudy, StudyIds, insert_calibration, insert_evaluations, insert_experiment,
     insert_study,
 };
+use super::library::LibraryChange;
 use super::results::StudyResults;
 use super::server;
 use super::sql::{Connection, query};
@@ -54,6 +55,10 @@ enum Write {
     Effect {
         new: NewEffect,
         reply: oneshot::Sender<AddedEffect>,
+    },
+    Library {
+        change: LibraryChange,
+        reply: oneshot::Sender<()>,
     },
     Results {
         results: StudyResults,
@@ -297,6 +302,11 @@ impl Writer {
         self.committed(|reply| Write::Effect { new, reply }).await
     }
 
+    /// Changes the library.
+    pub async fn change_library(&self, change: LibraryChange) -> Result<(), StoreError> {
+        self.committed(|reply| Write::Library { change, reply }).await
+    }
+
     /// Stores the files of a study and deletes those under other stamps, unless the study has changed since the files were computed.
     pub async fn keep_results(&self, results: StudyResults) -> Result<(), StoreError> {
         self.committed(|reply| Write::Results { results, reply }).await
@@ -509,6 +519,10 @@ async fn write_group(
             Write::Effect { new, reply } => replies
                 .effects
                 .push((reply, insert_effect(connection, new).await?)),
+            Write::Library { change, reply } => {
+                super::library::write(connection, change).await?;
+                replies.done.push(reply);
+            }
             Write::Results { results, reply } => {
                 super::results::write(connection, results).await?;
                 replies.done.push(reply);

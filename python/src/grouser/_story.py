@@ -58,6 +58,8 @@ class Step:
     kind: str
     #: What to do, in a sentence.
     text: str
+    #: Where the result is stated, with the keys of the files; ``None`` where nothing is stated.
+    detail: str | None
     #: Arguments of the program ``coordinator``; ``None`` of what no command does.
     command: str | None
     #: The effect to add, or that the runs would tell apart.
@@ -142,6 +144,7 @@ def story(told: Mapping[str, Any]) -> Story:
         Step(
             kind=step["kind"],
             text=step["text"],
+            detail=step.get("detail"),
             command=step.get("command"),
             effect=step.get("effect"),
             wheel=step.get("wheel"),

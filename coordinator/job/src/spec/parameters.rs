@@ -13,7 +13,7 @@ use crate::data::noise;
 use crate::data::shared_sd::{SharedSd, StiffnessErrors};
 use crate::job::Job;
 use crate::table::posterior_prior::JointPrior;
-use crate::table::prior_entry::{FreeParameter, ParsedPrior};
+use crate::table::prior_entry::{FreeParameter, ParsedPrior, check_effect};
 
 /// The model with its fixed parameters, and the free parameters.
 pub(super) struct Parameters {
@@ -37,6 +37,7 @@ impl Parameters {
     ) -> Result<Parameters, FileError> {
         let in_job = |message: String| FileError::whole(name, message);
         let wheels = experiment.wheel_names();
+        check_candidates(name, job)?;
         let effects = effects(name, job)?;
         let scope = ParameterScope {
             wheels: &wheels,
@@ -84,6 +85,26 @@ fn effects(name: &str, job: &Job) -> Result<EffectSet, FileError> {
         names.filter(|name| *name != RING_TRANSFER),
         |file| job.files.effect(file),
     )
+}
+
+/// Checks the files of the search's candidates.
+fn check_candidates(name: &str, job: &Job) -> Result<(), FileError> {
+    for file in &job.candidate_files {
+        let effect = job.files.effect(file).unwrap_or_else(|| {
+            let message = format!("file \"{file}\" is named but was not sent");
+            Err(FileError::whole(name, message))
+        })?;
+        check_effect(file, &effect)?;
+        if effect
+            .parameters
+            .iter()
+            .all(|parameter| parameter.neutral.is_none())
+        {
+            let message = "a candidate needs a strength: a parameter with `neutral`";
+            return Err(FileError::whole(file, message.to_owned()));
+        }
+    }
+    Ok(())
 }
 
 /// Returns the parameters that have the posterior of another calibration as their prior.

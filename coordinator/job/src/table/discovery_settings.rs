@@ -48,6 +48,9 @@ pub(crate) struct RawDiscovery {
     max_effects: usize,
     /// Whether the other kind of model is a candidate too.
     other_kind: bool,
+    /// Files of effects that are candidates beside the catalogue.
+    #[schemars(extend("uniqueItems" = true))]
+    pub(crate) candidate_files: Vec<String>,
     #[schemars(with = "Value")]
     pub(crate) priors: toml::Table,
 }
@@ -58,6 +61,7 @@ impl Default for RawDiscovery {
             apply: "off".into(),
             max_effects: 3,
             other_kind: false,
+            candidate_files: Vec::new(),
             priors: toml::Table::new(),
         }
     }

@@ -39,8 +39,12 @@ pub fn extended_job(name: &str, job: &FileSet, addition: &Addition) -> Result<Fi
             ModelChange::Turn(switch) => text.turn(switch)?,
         }
     }
+    let candidates = text.candidate_files();
     for (file, added) in &addition.files {
-        if files.insert(file.clone(), added.text.clone()).is_some() {
+        let before = files.insert(file.clone(), added.text.clone());
+        // A candidate's file is there before the model has its effect.
+        let is_candidate = candidates.contains(file) && before.as_ref() == Some(&added.text);
+        if before.is_some() && !is_candidate {
             return Err(text.error(format!("file \"{file}\" exists already")));
         }
     }
@@ -71,8 +75,29 @@ pub fn without_effects(name: &str, job: &FileSet, effects: &[String]) -> Result<
     for table in ["model", "priors"] {
         text.remove(table, is_about);
     }
+    let candidates = text.candidate_files();
     let mut files = job.files.clone();
-    files.retain(|file, _| !is_dropped(file));
+    files.retain(|file, _| candidates.contains(file) || !is_dropped(file));
+    Ok(text.beside(&files))
+}
+
+/// Returns a job whose search tries further effects, each with its file; a file that the job has already stays as it is.
+///
+/// # Errors
+/// [`FileError`] if the text is no job, or `candidate_files` no list.
+pub fn with_candidates(
+    name: &str,
+    job: &FileSet,
+    candidates: &[(String, String)],
+) -> Result<FileSet, FileError> {
+    let mut text = JobText::parse(name, &job.toml)?;
+    let mut files = job.files.clone();
+    for (file, effect) in candidates {
+        if !files.contains_key(file) {
+            files.insert(file.clone(), effect.clone());
+            text.add_candidate(file)?;
+        }
+    }
     Ok(text.beside(&files))
 }
 
@@ -325,7 +350,8 @@ impl<'n> JobText<'n> {
 
     /// Removes `[discovery]` except the keys that define the candidates, because a derived job starts no search itself.
     fn keep_candidates(&mut self) {
-        self.remove("discovery", |key| !["priors", "other_kind"].contains(&key));
+        let stays = ["priors", "other_kind", "candidate_files"];
+        self.remove("discovery", |key| !stays.contains(&key));
         if self
             .table("discovery")
             .is_some_and(|discovery| discovery.is_empty())
@@ -392,6 +418,27 @@ impl<'n> JobText<'n> {
             let list = model.entry(key).or_insert(value(Array::new()));
             list.as_array_mut().ok_or(not_a_list)?.extend(names);
         }
+        Ok(())
+    }
+
+    /// Lists the files of candidates.
+    fn candidate_files(&self) -> Vec<String> {
+        let list = self
+            .document
+            .get("discovery")
+            .and_then(|table| table.get("candidate_files"));
+        let files = list.and_then(Item::as_array).into_iter().flatten();
+        files
+            .filter_map(|file| file.as_str().map(str::to_owned))
+            .collect()
+    }
+
+    /// Adds a file of a candidate.
+    fn add_candidate(&mut self, file: &str) -> Result<(), FileError> {
+        let not_a_list = self.error("[discovery] candidate_files must be a list".into());
+        let discovery = self.table_or_new("discovery")?;
+        let list = discovery.entry("candidate_files").or_insert(value(Array::new()));
+        list.as_array_mut().ok_or(not_a_list)?.push(file);
         Ok(())
     }
 

@@ -492,3 +492,35 @@ fn a_metamodel_is_refused_in_a_new_job_and_read_as_moves_in_an_old_one() {
     let off = job.replacen("= 20", "= 0", 1);
     assert_eq!(without_metamodel("job.toml", &off).unwrap(), SAMPLED);
 }
+
+#[test]
+fn a_candidate_has_its_file_and_stays_where_its_effect_leaves_the_model() {
+    let job = FileSet {
+        toml: "[model]\nkind = \"scm\"\n".into(),
+        ..FileSet::default()
+    };
+    let mine = "name = \"mine\"\n".to_owned();
+    let candidates = [("mine.toml".to_owned(), mine.clone())];
+    let with = with_candidates("job.toml", &job, &candidates).unwrap();
+    assert_eq!(
+        with.toml,
+        "[model]\nkind = \"scm\"\n\n[discovery]\ncandidate_files = [\"mine.toml\"]\n"
+    );
+    assert_eq!(with_candidates("job.toml", &with, &candidates).unwrap(), with);
+    // A search goes on with the candidates of its job.
+    assert_eq!(continued_job("job.toml", &with).unwrap(), with);
+    let addition = |text: &str| Addition {
+        files: vec![("mine.toml".into(), NamedFile::new(text.into()))],
+        ..Addition::default()
+    };
+    let extended = extended_job("job.toml", &with, &addition(&mine)).unwrap();
+    assert!(
+        extended.toml.contains("effect_files = [\"mine.toml\"]"),
+        "{}",
+        extended.toml
+    );
+    let other = extended_job("job.toml", &with, &addition("name = \"other\"\n")).unwrap_err();
+    assert_eq!(other.to_string(), "job.toml: file \"mine.toml\" exists already");
+    let without = without_effects("job.toml", &extended, &["mine".into()]).unwrap();
+    assert_eq!(without.files, with.files);
+}

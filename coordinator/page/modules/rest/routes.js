@@ -11,6 +11,7 @@ export const path = /** @type {Paths} */ ({
   workers: "/v1/workers",
   examples: "/v1/examples",
   effects: "/v1/effects",
+  library: "/v1/library",
   experiment: (/** @type {number} */ id) => `/v1/experiments/${id}`,
   study,
   calibration,
@@ -65,6 +66,12 @@ export const followRuns = (/** @type {number} */ id, /** @type {string} */ runs)
 
 /** @returns {Promise<Schemas["JobCheck"]>} */
 export const check = (/** @type {Schemas["NewCheck"]} */ job) => post("/v1/check", job);
+
+/** @returns {Promise<Schemas["LibraryLaw"]>} */
+export const addToLibrary = (/** @type {Schemas["NewLibraryLaw"]} */ law) => post(path.library, law);
+
+/** @returns {Promise<Schemas["LibraryLawRemoved"]>} */
+export const removeFromLibrary = (/** @type {string} */ name) => remove(`${path.library}/${name}`);
 
 /** @returns {Promise<Schemas["CalibrationCreated"]>} */
 export const discover = (/** @type {number} */ id) => post(`${calibration(id)}/discovery`);

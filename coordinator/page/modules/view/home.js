@@ -1,6 +1,7 @@
 // The home: all studies with the error of their current models, and the workers.
 
 import { html, useState } from "../html.js";
+import { LibraryFold } from "../part/library_fold.js";
 import { Empty, Failure, Pending } from "../part/message.js";
 import { StudyList } from "../part/study_list.js";
 import { WorkerTable } from "../part/worker_table.js";
@@ -39,6 +40,7 @@ export function Home() {
         studies, too
       </label>
     </p>
+    <${LibraryFold} />
     <h2>Workers</h2>
     ${
       workers.answer

@@ -9,6 +9,8 @@ import { t, translated } from "../language/language.js";
 import { ChannelCharts } from "../part/channel_charts.js";
 import { Clauses } from "../part/clauses.js";
 import { Explanations, useTitles } from "../part/explanations.js";
+import { Formulas } from "../part/formulas.js";
+import { LibraryButton } from "../part/library_button.js";
 import { Failure, Pending } from "../part/message.js";
 import { NewRuns } from "../part/new_runs.js";
 import { NoModel } from "../part/no_model.js";
@@ -148,6 +150,19 @@ export function MissingEffect({ study, model, query, reload }) {
           name=${study.name}
           add=${isReport ? null : () => add({ effect_file: { name: "outside.toml", text: outside.effect_file } })}
         />
+        ${
+          outside.formulas &&
+          html`
+            <${Formulas}
+              formulas=${outside.formulas}
+              variable=${outside.depends_on}
+              add=${
+                isReport ? null : (/** @type {string} */ text) => add({ effect_file: { name: "formula.toml", text } })
+              }
+            />
+          `
+        }
+        ${!isReport && html`<${LibraryButton} calibration=${model.id} />`}
       `
     }
     <${NotTried} record=${record} />

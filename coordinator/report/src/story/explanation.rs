@@ -22,7 +22,7 @@ pub struct Alternative {
 impl From<&JudgedEffect> for Alternative {
     fn from(effect: &JudgedEffect) -> Self {
         Alternative {
-            summary: summary(&effect.name),
+            summary: effect.summary.clone().or_else(|| summary(&effect.name)),
             name: effect.name.clone(),
             probability: effect.probability,
         }

@@ -35,14 +35,15 @@ impl Effect {
         ))
     }
 
-    /// Returns whether the effect changes nothing when variables have these values, at the typical values of its strengths.
+    /// Returns whether the effect changes nothing when variables have these values, at the values at which its
+    /// strengths are shown ([`Parameter::shown_at`]).
     ///
     /// The change by a mechanism is not known here and counts as a change, except that a side wall acts only at a slip angle.
     ///
     /// Checked by `tests::an_effect_of_the_slip_angle_is_absent_straight_ahead`.
     pub fn is_absent_at(&self, held: &[(Variable, f64)]) -> bool {
-        let typical = |p: &Parameter| p.typical.unwrap_or_else(|| value(p));
-        let parameters: Vec<f64> = self.parameters.iter().map(typical).collect();
+        let shown = |p: &Parameter| p.shown_at().unwrap_or_else(|| value(p));
+        let parameters: Vec<f64> = self.parameters.iter().map(shown).collect();
         let is_straight = held.contains(&(Variable::SlipAngle, 0.0));
         let can_act = match self.mechanism {
             None => false,
@@ -77,9 +78,38 @@ impl Effect {
     }
 }
 
+impl Parameter {
+    /// Returns the value at which a strength is shown: the file's, or else one scale of its prior.
+    ///
+    /// Checked by `tests::every_strength_is_shown_at_a_value_that_is_not_neutral`.
+    #[must_use]
+    pub fn shown_at(&self) -> Option<f64> {
+        let prior = &self.prior;
+        let pair = |key: &str| -> Option<[f64; 2]> {
+            let [a, b] = prior.get(key)?.as_array()?.as_slice() else {
+                return None;
+            };
+            Some([number(a)?, number(b)?])
+        };
+        let prior_centre = || {
+            let uniform = || pair("uniform").map(|[a, b]| f64::midpoint(a, b));
+            let loguniform = || pair("loguniform").map(|[a, b]| libm::sqrt(a * b));
+            let normal = || pair("normal").map(|[mean, sd]| mean + sd);
+            let lognormal = || pair("lognormal").map(|[median, _]| median);
+            let half = || number(prior.get("half_normal")?);
+            let table = uniform().or_else(loguniform).or_else(normal);
+            table.or_else(lognormal).or_else(half)
+        };
+        self.typical.or_else(|| number(prior)).or_else(prior_centre)
+    }
+}
+
+fn number(value: &toml::Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
+}
+
 /// Returns the fixed value of a parameter, or a possible one.
 fn value(parameter: &Parameter) -> f64 {
-    let number = |value: &toml::Value| value.as_float().or_else(|| value.as_integer().map(|i| i as f64));
     let prior_value = || {
         let table = parameter.prior.as_table()?;
         let first = table.values().find_map(toml::Value::as_array)?;
@@ -129,6 +159,23 @@ mod tests {
              [parameters.a]\nunit = \"1\"\nneutral = {neutral}\nprior = {{ half_normal = 0.1 }}\n"
         );
         Effect::read(&text).expect("an effect")
+    }
+
+    #[test]
+    fn every_strength_is_shown_at_a_value_that_is_not_neutral() {
+        for effect in catalogue::catalogue() {
+            for parameter in effect.parameters.iter().filter(|p| p.neutral.is_some()) {
+                let name = format!("{}.{}", effect.name, parameter.name);
+                assert_ne!(parameter.shown_at(), parameter.neutral, "{name}");
+            }
+        }
+        // A normal prior about the neutral value, without a typical value.
+        let text = effect("drawbar_pull * (1 + a)", 0.0)
+            .text
+            .replace("half_normal = 0.1", "normal = [0.0, 0.2]");
+        let about_neutral = Effect::read(&text).expect("an effect");
+        assert_eq!(about_neutral.parameters[0].shown_at(), Some(0.2));
+        assert!(!about_neutral.is_absent_at(&[(Variable::SlipAngle, 0.0)]));
     }
 
     #[test]

@@ -1,0 +1,212 @@
+//! The laws that joined the library: effects that every later search tries, with what the studies say of them.
+
+use std::collections::BTreeMap;
+
+use formula::Effect;
+use shared::api::NewLibraryLaw;
+use shared::file::FileSet;
+
+use super::clock::now_ms;
+use super::error::ServiceError;
+use super::handle::Service;
+use crate::effect::library::{LawInStudy, LibraryLaw, Standing};
+use job::{ServiceEffect, effect_name, effect_with_origin};
+use record::{CalibrationRow, Discovery};
+use result::discovery::effect_files;
+use store::{LibraryChange, LibraryRow, StoreError, StoredEffect};
+
+impl Service {
+    /// Returns the laws of the library, by name.
+    ///
+    /// # Errors
+    /// [`ServiceError`] of the store.
+    pub async fn library(&self) -> Result<Vec<LibraryLaw>, ServiceError> {
+        let mut laws = Vec::new();
+        for row in self.store().reader().library().await? {
+            laws.extend(self.library_law(row).await?);
+        }
+        Ok(laws)
+    }
+
+    /// Adds a law to the library: an effect file, or a law that a search found. An effect of that name gets a new version.
+    ///
+    /// # Errors
+    /// [`ServiceError`]: the file is malformed or its name belongs to the catalogue, or the search found no law of this name.
+    pub async fn add_to_library(
+        &self,
+        new: NewLibraryLaw,
+        by: Option<String>,
+    ) -> Result<LibraryLaw, ServiceError> {
+        let (text, found_in) = match (new.text, new.calibration) {
+            (Some(text), None) => (text, None),
+            (None, Some(calibration)) => {
+                let (text, study) = self.law_of_search(calibration, new.law.as_deref()).await?;
+                (text, Some(study))
+            }
+            _ => {
+                let message = "a law is {\"text\": TEXT}, the text of an effect file, or {\"calibration\": ID}, whose search found it";
+                return Err(ServiceError::Details(message.to_owned()));
+            }
+        };
+        let text = match &new.name {
+            Some(name) => effect_with_origin(LAW, &text, Some(name), None)?,
+            None => text,
+        };
+        let added = self.add_effect(text, by.clone()).await?;
+        let row = LibraryRow {
+            name: added.name,
+            added_at_ms: now_ms(),
+            added_by: by,
+            found_in,
+        };
+        let change = LibraryChange::Add(row.clone());
+        self.store().writer().change_library(change).await?;
+        let law = self.library_law(row.clone()).await?;
+        law.ok_or_else(|| no_law(row.name))
+    }
+
+    /// Removes a law from the library; its effect stays in the catalogue of the service.
+    ///
+    /// # Errors
+    /// [`ServiceError::NotFound`] if the library has no law of this name.
+    pub async fn remove_from_library(&self, name: &str) -> Result<(), ServiceError> {
+        let rows = self.store().reader().library().await?;
+        if !rows.iter().any(|row| row.name == name) {
+            return Err(no_law(name.to_owned()));
+        }
+        let change = LibraryChange::Remove(name.to_owned());
+        Ok(self.store().writer().change_library(change).await?)
+    }
+
+    /// Returns the files of the library, by the names that they have in a job.
+    pub(super) async fn library_files(&self) -> Result<Vec<(String, String)>, ServiceError> {
+        let mut files = Vec::new();
+        for row in self.store().reader().library().await? {
+            let stored = self.user_effect(&row.name).await?;
+            files.extend(stored.map(|(_, effect)| {
+                let file =
+                    ServiceEffect::new(row.name.clone(), &row.name, effect.version.version, effect.text);
+                (file.file, file.text)
+            }));
+        }
+        Ok(files)
+    }
+
+    /// Returns the effect file of a law that the search of a calibration's model found, with its origin, and the number of the study.
+    async fn law_of_search(
+        &self,
+        calibration: i64,
+        law: Option<&str>,
+    ) -> Result<(String, i64), ServiceError> {
+        let record = self.finished_search(calibration).await?;
+        let row = self.calibration_row(calibration).await?;
+        let files = effect_files(&record);
+        let is_meant = |text: &String| law.is_none_or(|law| effect_name(text).as_deref() == Some(law));
+        let text = files.iter().map(|(_, text)| text).find(|text| is_meant(text));
+        let text = text.ok_or_else(|| {
+            let names: Vec<&str> = files
+                .iter()
+                .map(|(file, _)| file.trim_end_matches(".toml"))
+                .collect();
+            let there = match names.as_slice() {
+                [] => "it found no law outside the library".to_owned(),
+                names => format!("it found {}", names.join(", ")),
+            };
+            ServiceError::Details(format!(
+                "the search of calibration {calibration} has no such law: {there}"
+            ))
+        })?;
+        let name = row.name.replace(['"', '\\'], " ");
+        let origin = format!(
+            "found by the search of calibration {calibration} of study {} ({name})",
+            row.study
+        );
+        Ok((effect_with_origin(LAW, text, None, Some(&origin))?, row.study))
+    }
+
+    /// Returns a law with its studies; `None` if its effect is gone.
+    async fn library_law(&self, row: LibraryRow) -> Result<Option<LibraryLaw>, ServiceError> {
+        let Some((_, stored)) = self.user_effect(&row.name).await? else {
+            return Ok(None);
+        };
+        let studies = self.studies_of_law(&row).await?;
+        Ok(Some(law(row, &stored)?.with_studies(studies)))
+    }
+
+    /// Returns what each study says of a law: the last of its searches that tried it.
+    async fn studies_of_law(&self, law: &LibraryRow) -> Result<Vec<LawInStudy>, ServiceError> {
+        let reader = self.store().reader();
+        let withdrawn = reader.withdrawn().await?;
+        let mut last: BTreeMap<i64, (CalibrationRow, Discovery)> = BTreeMap::new();
+        for (search, record) in reader.discoveries_with(&law.name).await? {
+            if !withdrawn.contains(&search) && record.effects.iter().any(|effect| effect.name == law.name) {
+                let row = self.calibration_row(search).await?;
+                last.insert(row.study, (row, record));
+            }
+        }
+        // Measurements count once: those that found the law do not, and of several studies of the same ones the last does.
+        let mut taken: Vec<FileSet> = Vec::new();
+        if let Some(study) = law.found_in {
+            for row in reader.study(study).await? {
+                taken.push(self.experiment(row.experiment).await?);
+            }
+        }
+        let mut studies = Vec::new();
+        for (study, (row, record)) in last.into_iter().rev() {
+            let Some(judged) = record.effects.iter().find(|effect| effect.name == law.name) else {
+                continue;
+            };
+            let measurements = self.experiment(row.experiment).await?;
+            let is_new = !taken.contains(&measurements);
+            taken.push(measurements);
+            let searched = row.membership.parent.unwrap_or(row.id);
+            let lead = reader.study(study).await?.into_iter().next();
+            studies.push(LawInStudy {
+                study,
+                name: lead.map(|lead| lead.name).unwrap_or_default(),
+                calibration: searched,
+                given: record.given.clone(),
+                log_bayes_factor: judged.log_bayes_factor,
+                probability: judged.probability,
+                parameters: judged.parameters.clone(),
+                units: judged.units.clone(),
+                standing: Standing::new(judged.log_bayes_factor),
+                counts: is_new,
+            });
+        }
+        studies.reverse();
+        Ok(studies)
+    }
+}
+
+/// Name of a law's file in messages.
+const LAW: &str = "law.toml";
+
+fn no_law(name: String) -> ServiceError {
+    ServiceError::NotFound {
+        what: "law of the library",
+        id: name,
+    }
+}
+
+/// Makes a law of its row and its file, which was validated when it was added.
+fn law(row: LibraryRow, stored: &StoredEffect) -> Result<LibraryLaw, ServiceError> {
+    let corrupt = |error| {
+        let version = stored.version.version;
+        StoreError::Corrupt(format!("effect {} version {version}: {error}", stored.name))
+    };
+    let effect = Effect::read(&stored.text).map_err(corrupt)?;
+    Ok(LibraryLaw {
+        version: stored.version.version,
+        hooks: effect.hooks().map(|hook| hook.name().to_owned()).collect(),
+        summary: effect.summary,
+        source: effect.source,
+        name: row.name,
+        added_at_ms: row.added_at_ms,
+        added_by: row.added_by,
+        found_in: row.found_in,
+        studies: Vec::new(),
+        counted: 0,
+        log_bayes_factor: 0.0,
+    })
+}
