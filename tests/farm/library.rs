@@ -16,6 +16,29 @@ fn hidden_law() -> Job {
     )
 }
 
+/// The same runs with other errors of measurement, far below the noise.
+fn measured_anew(job: Job) -> Job {
+    let cell = |row: usize, column: usize, cell: &str| match column {
+        8..=10 => {
+            let measured: f64 = cell.parse().expect("a measured value");
+            (measured * (1.0 + 0.004 * (row as f64).sin())).to_string()
+        }
+        _ => cell.to_owned(),
+    };
+    let line = |(row, line): (usize, &str)| match row {
+        0 => format!("{line}\n"),
+        _ => {
+            let cells = line
+                .split(',')
+                .enumerate()
+                .map(|(column, text)| cell(row, column, text));
+            cells.collect::<Vec<_>>().join(",") + "\n"
+        }
+    };
+    let runs = job.runs.lines().enumerate().map(line).collect();
+    Job { runs, ..job }
+}
+
 /// Submits a job, waits for its search, and returns the calibration and the record of the search.
 fn searched(service: &Service, job: &Job) -> (i64, Value) {
     let id = service.submit(job);
@@ -59,13 +82,8 @@ fn a_law_that_one_study_found_is_tried_and_weighed_by_later_ones() {
     assert_contains!(added, "found by the search of calibration 1 of study 1");
     assert_contains!(added, "no study counts as evidence yet");
 
-    // Another rig: the same law with one run less. It is named, and it is said in words of its own.
-    let last = hidden_law()
-        .runs
-        .lines()
-        .rfind(|line| line.ends_with(",fit"))
-        .map(|line| format!("{line}\n"));
-    let other_rig = hidden_law().in_runs(&last.expect("a fitted run"), "");
+    // Another rig: the same law, measured anew. It is named, and it is said in words of its own.
+    let other_rig = measured_anew(hidden_law());
     let (second, record) = searched(&service, &other_rig);
     assert_eq!(record["verdict"], "named", "{}", record["text"]);
     assert_contains!(word(&record["text"]), "fast_shear is missing: ");
@@ -80,8 +98,11 @@ fn a_law_that_one_study_found_is_tried_and_weighed_by_later_ones() {
     let extended = service.extend(second, "fast_shear");
     service.wait_for(extended, "finished");
 
-    // The measurements that found the law do not count, also in another study.
-    let (third, record) = searched(&service, &hidden_law().in_job("seed = 1", "seed = 2"));
+    // The measurements that found the law do not count, also where a study leaves one of them out.
+    let runs = hidden_law().runs;
+    let last = runs.lines().rfind(|line| line.ends_with(",fit"));
+    let fewer = hidden_law().in_runs(&format!("{}\n", last.expect("a fitted run")), "");
+    let (third, record) = searched(&service, &fewer);
     assert!(explanation(&record, "fast_shear").is_some());
     let laws = service.client.json("/v1/library");
     let law = &laws[0];
@@ -111,6 +132,51 @@ fn a_law_that_one_study_found_is_tried_and_weighed_by_later_ones() {
     assert_contains!(refusal, "there is no law of the library fast_shear");
     let (_, record) = searched(&service, &other_rig.in_job("seed = 1", "seed = 3"));
     assert!(explanation(&record, "fast_shear").is_none());
+}
+
+#[test]
+fn a_law_that_would_stop_a_search_is_refused() {
+    let service = Service::start(&[]);
+    let always = "name = \"always\"\nsummary = \"s\"\nsource = \"s\"\nshear = \"0.9 * tau\"\n";
+    let refused = service
+        .client
+        .post("/v1/library", &serde_json::json!({ "text": always }));
+    assert_eq!(refused.status, 422, "{}", refused.body);
+    assert_contains!(refused.body, "needs a strength");
+    let neither = service.client.post(
+        "/v1/library",
+        &serde_json::json!({"text": GAIN, "law": "my_gain"}),
+    );
+    assert_eq!(neither.status, 400, "{}", neither.body);
+    // Two files of one effect could not stand in one model.
+    let two = "[discovery]\ncandidate_files = [\"gain.toml\", \"same.toml\"]\n[sampler]";
+    let job = Job::small()
+        .in_job("[sampler]", two)
+        .beside("gain.toml", GAIN)
+        .beside("same.toml", GAIN);
+    let experiment = service.create("/v1/experiments", &job.experiment_json())["id"].take();
+    let new = serde_json::json!({"experiment": experiment, "toml": job.job, "files": job.effect_files()});
+    let refused = service.client.post("/v1/calibrations", &new);
+    assert_eq!(refused.status, 422, "{}", refused.body);
+    assert_contains!(refused.body, "two files of the effect");
+}
+
+#[test]
+fn a_law_of_the_library_is_the_last_version_of_its_name() {
+    let service = Service::start(&[]);
+    let added = |text: &str| {
+        let added = service
+            .client
+            .post("/v1/library", &serde_json::json!({ "text": text }));
+        assert_eq!(added.status, 201, "{}", added.body);
+        added.json()["version"].as_i64()
+    };
+    assert_eq!(added(GAIN), Some(1));
+    assert_eq!(added(GAIN), Some(1));
+    assert_eq!(added(&GAIN.replace("prior = 0.25", "prior = 0.5")), Some(2));
+    let laws = service.client.json("/v1/library");
+    assert_eq!(items(&laws).count(), 1);
+    assert_eq!((&laws[0]["version"], &laws[0]["counted"]), (&2.into(), &0.into()));
 }
 
 #[test]

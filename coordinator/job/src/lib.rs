@@ -59,7 +59,7 @@ pub use table::candidate_priors::candidate_priors;
 pub use table::discovery_settings::{Apply, DiscoverySettings};
 pub use table::likelihood_settings::LikelihoodSettings;
 pub use table::posterior_prior::{ImpliedModuli, JointPrior, PosteriorPrior};
-pub use table::prior_entry::{FreeParameter, PriorEntry, check_effect, free_parameters};
+pub use table::prior_entry::{FreeParameter, PriorEntry, check_candidate, check_effect, free_parameters};
 pub use table::prior_entry_error::PriorEntryError;
 pub use text::{
     accepting_job, continued_job, earlier_search, extended_job, model_job, point_job, searched_job,

@@ -49,6 +49,18 @@ test("sentences of the service are German with decimal commas, whole", () => {
       "weiter mit Kalibrierung 3 (which-model (wong_reece)), dem aktuellen Modell der Studie",
     ],
     ["wheel", "Rad"],
+    [
+      "sinkage on held-out runs cannot be judged: its noise is inferred together with the misfit",
+      "Einsinkung bei zurückgehaltenen Fahrten: nicht zu beurteilen, weil das Rauschen mit der Abweichung zusammen geschätzt ist",
+    ],
+    [
+      "the density of soil s is not stated; 1500 kg/m^3 is assumed",
+      "die Dichte des Bodens s ist nicht angegeben; 1500 kg/m³ ist angenommen",
+    ],
+    [
+      "go on with calibration 3 (slip-30 v2.1), the current model of the study",
+      "weiter mit Kalibrierung 3 (slip-30 v2.1), dem aktuellen Modell der Studie",
+    ],
   ])
     assert.equal(plain(said(english)), german);
 });

@@ -1,13 +1,12 @@
 //! The candidate effects of the library, each as an addition to a job.
 
-use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use formula::catalogue::{catalogue, find};
 use formula::slip::variables;
 use formula::{Effect, Hook, Parameter};
-use shared::experiment::{Experiment, RunUse};
+use shared::experiment::{Experiment, RunUse, TestRun};
 use shared::file::{FileError, FileSet, unknown_word};
 use shared::model::effects::parameter_name;
 use shared::parameters::WHEEL_RADIUS;
@@ -146,8 +145,7 @@ pub type LibraryEffect = (CandidateEffect, Vec<FreeParameter>);
 /// Lists the candidate effects of the library for an experiment.
 ///
 /// First every effect of the catalogue that the job does not have, in the order of the catalogue; then, where fitted runs have
-/// several wheels, each on each of these wheels alone; then the effects of the job's candidate files; then those of the shear
-/// displacement with that on the nodes of the soil.
+/// several wheels, each on each of these wheels alone; then those of the shear displacement with that on the nodes of the soil.
 /// Checked by `tests::of_several_wheels_each_may_have_an_effect_alone` and
 /// `tests::an_effect_of_the_displacement_may_be_on_the_nodes`.
 ///
@@ -166,13 +164,8 @@ pub fn library(
         existing.extend(base.fit_variant.effects.into_iter().map(|e| e.name));
         runs = &experiment.runs;
     }
-    let fitted = || runs.iter().filter(|run| run.usage == RunUse::Fit);
-    let wheels: BTreeSet<&str> = fitted().map(|run| run.wheel.as_str()).collect();
-    let acts = |effect: &Effect, wheel: Option<&str>| {
-        let mut on_wheel = fitted().filter(|run| wheel.is_none_or(|wheel| run.wheel == wheel));
-        fitted().next().is_none()
-            || on_wheel.any(|run| !effect.is_absent_at(&variables(run.slip, run.slip_angle_deg.to_radians())))
-    };
+    let fitted = runs.iter().filter(|run| run.usage == RunUse::Fit);
+    let wheels: BTreeSet<&str> = fitted.map(|run| run.wheel.as_str()).collect();
     let missing = || catalogue().iter().filter(|e| !existing.contains(&e.name));
     let everywhere = missing().map(|effect| (effect, None));
     let on_one = missing()
@@ -183,21 +176,11 @@ pub fn library(
         let candidate = candidate(effect, wheel);
         // The model may lack the mechanism that the effect changes; then no runs would show the effect.
         let is_mechanism = effect.hooks().next().is_none();
-        let checked = match acts(effect, wheel) {
-            true if infers_radius && scales_radius(effect) => Err(ExclusionReason::FreeRadius),
+        let checked = match acts(runs, effect, wheel) {
+            true if infers_radius && effect.hooks().eq([Hook::Radius]) => Err(ExclusionReason::FreeRadius),
             true => check(job, experiment, &candidate.extension, effect, wheel),
             false if is_mechanism => check(job, experiment, &candidate.extension, effect, wheel)
                 .and(Err(ExclusionReason::AbsentEverywhere)),
-            false => Err(ExclusionReason::AbsentEverywhere),
-        };
-        match checked {
-            Ok(parameters) => candidates.push((candidate, parameters)),
-            Err(reason) => excluded.push((candidate.name, reason)),
-        }
-    }
-    for (candidate, effect) in candidates_in_files(job, &existing) {
-        let checked = match acts(&effect, None) {
-            true => check(job, experiment, &candidate.extension, &effect, None),
             false => Err(ExclusionReason::AbsentEverywhere),
         };
         match checked {
@@ -215,27 +198,12 @@ pub fn library(
     (candidates, excluded)
 }
 
-/// Lists the candidates that come with the job as files, except those that its model has.
-fn candidates_in_files<'a>(
-    job: &'a Job,
-    existing: &'a BTreeSet<String>,
-) -> impl Iterator<Item = (CandidateEffect, Effect)> + 'a {
-    let read = |file: &String| {
-        let effect = job.files.effect(file)?.ok()?;
-        let extension = Extension::File {
-            name: file.clone(),
-            text: effect.text.clone(),
-        };
-        let name = effect.name.clone();
-        Some((CandidateEffect { name, extension }, effect))
-    };
-    let candidates = job.candidate_files.iter().filter_map(read);
-    candidates.filter(|(candidate, _)| !existing.contains(&candidate.name))
-}
-
-/// Returns whether an effect changes nothing but the radius of the wheel.
-fn scales_radius(effect: &Effect) -> bool {
-    effect.hooks().eq([Hook::Radius])
+/// Returns whether an effect changes something in a fitted run, of one wheel if it is named; true if no run is fitted.
+pub(super) fn acts(runs: &[TestRun], effect: &Effect, wheel: Option<&str>) -> bool {
+    let fitted = || runs.iter().filter(|run| run.usage == RunUse::Fit);
+    let mut on_wheel = fitted().filter(|run| wheel.is_none_or(|wheel| run.wheel == wheel));
+    fitted().next().is_none()
+        || on_wheel.any(|run| !effect.is_absent_at(&variables(run.slip, run.slip_angle_deg.to_radians())))
 }
 
 /// Returns the candidate of a name, with its effect; `None` for a name that is not in the catalogue.
@@ -249,16 +217,6 @@ pub(super) fn candidate_of(name: &str) -> Option<(&'static Effect, CandidateEffe
     };
     let effect = find(effect)?;
     Some((effect, candidate(effect, wheel)))
-}
-
-impl CandidateEffect {
-    /// Returns its effect: that of the catalogue, or that of its file; `None` for a parameter or a setting of the model.
-    pub(super) fn effect(&self) -> Option<Cow<'static, Effect>> {
-        match &self.extension {
-            Extension::File { text, .. } => Effect::read(text).ok().map(Cow::Owned),
-            _ => candidate_of(&self.name).map(|(effect, _)| Cow::Borrowed(effect)),
-        }
-    }
 }
 
 fn candidate(effect: &Effect, wheel: Option<&str>) -> CandidateEffect {

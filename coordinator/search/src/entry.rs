@@ -1,5 +1,7 @@
 //! The entries of a search: each candidate of the discovery with its addition to the job.
 
+use std::borrow::Cow;
+
 use discovery::Candidate;
 use formula::{Effect, Hook};
 use job::{EffectOnNodes, FreeParameter, Job, ModelSwitch, NamedFiles, PlainParameter, Spec};
@@ -8,9 +10,19 @@ use record::{Extension, NotTried};
 use shared::model::ModelKind;
 use shared::parameters::{SPATIAL, model_parameters};
 
-use super::candidate::{CandidateEffect, spec, with_extensions};
+use super::candidate::{CandidateEffect, candidate_of, spec, with_extensions};
 use super::law::dependence::Dependence;
 use super::law::form::LawForm;
+
+impl CandidateEffect {
+    /// Returns its effect: that of the catalogue, or that of its file; `None` for a parameter or a setting of the model.
+    pub(super) fn effect(&self) -> Option<Cow<'static, Effect>> {
+        match &self.extension {
+            Extension::File { text, .. } => Effect::read(text).ok().map(Cow::Owned),
+            _ => candidate_of(&self.name).map(|(effect, _)| Cow::Borrowed(effect)),
+        }
+    }
+}
 
 /// A candidate with its addition to the job.
 #[derive(Debug, Clone)]

@@ -3,6 +3,7 @@
 //! # Layout
 //! - [`candidate`]: candidate effects as additions to a job, and those of the library. `law`: laws outside the library as effect
 //!   files.
+//! - `candidate_file`: candidates that come with the job as effect files.
 //! - [`untried`]: effects that need a property which the experiment does not state.
 //! - `models`: the models of a search, made when they are queried. `entry`: their candidates. `reduced_model`: the base without one of its effects. `family`: candidates that are tried
 //!   together. `design`: levels of the design, and runs that the rig could make.
@@ -14,6 +15,7 @@
 mod answers;
 mod bench_measurement;
 pub mod candidate;
+mod candidate_file;
 mod curves;
 mod design;
 mod discovery_record;

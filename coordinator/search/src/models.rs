@@ -19,6 +19,7 @@ use shared::outcome::Observables;
 use super::candidate::{
     CandidateEffect, EXPERIMENT, ExclusionReason, JOB, LibraryEffect, library, spec, with_extensions,
 };
+use super::candidate_file::{candidates_in_files, effects_in_files, unfit_files};
 use super::design;
 use super::entry::{CandidateEntry, LawEntry};
 use super::family::set_families;
@@ -96,8 +97,11 @@ impl SearchModels {
         let job = Job::read(JOB, job)?.into_search();
         let experiment = Arc::new(Experiment::parse(EXPERIMENT, files)?);
         let base = spec(&job, &experiment)?;
-        let (effects, excluded) = library(&job, &experiment);
+        let (mut effects, mut excluded) = library(&job, &experiment);
         let (untried, assumed) = untried(&job, &experiment, files, base.model.is_smooth(), &excluded)?;
+        let (in_files, unfit) = candidates_in_files(&job, &base);
+        effects.extend(in_files);
+        excluded.extend(unfit);
         let external = base.model.external.iter();
         let mut not_tried: Vec<NotTried> = external.flat_map(out_of_reach).collect();
         not_tried.extend(absent(&job, &excluded));
@@ -388,10 +392,15 @@ fn laws(job: &Job, base: &Spec) -> Result<Vec<LawEntry>, FileError> {
         let entry = CandidateEntry::new(law, &effect, free, true);
         entry.ok_or_else(|| fail(format!("{name} has no strength")))
     };
+    // A law that is a candidate already is not offered a second time.
+    let of_model = base.fit_variant.effects.iter().map(|effect| effect.name.clone());
+    let taken = of_model
+        .chain(effects_in_files(job).map(|effect| effect.name))
+        .collect();
     let mut laws = Vec::new();
     let is_shown = |dependence: &Dependence| dependence.is_shown_by(base.model.external.as_ref());
     for dependence in dependences(&base.experiment).into_iter().filter(is_shown) {
-        let files = LawFiles::addable(&dependence, &job.files, &base.fit_variant.effects);
+        let files = LawFiles::addable(&dependence, &job.files, &taken);
         let Some(LawFiles { curve, forms }) = files else {
             continue;
         };
@@ -442,29 +451,6 @@ fn absent<'a>(
             why: reason.to_string(),
             needs: format!("{}{}", NotTried::RUNS, where_it_acts(&effect)),
         })
-    })
-}
-
-/// Lists the effects of the job's candidate files.
-fn effects_in_files(job: &Job) -> impl Iterator<Item = Effect> {
-    job.candidate_files
-        .iter()
-        .filter_map(|file| job.files.effect(file)?.ok())
-}
-
-/// Lists the effects of the job's candidate files that the model cannot have.
-fn unfit_files<'a>(
-    job: &'a Job,
-    excluded: &'a [(String, ExclusionReason)],
-) -> impl Iterator<Item = NotTried> + 'a {
-    let of_files: BTreeSet<String> = effects_in_files(job).map(|effect| effect.name).collect();
-    let unfit = excluded.iter().filter(move |(name, reason)| {
-        of_files.contains(name) && !matches!(reason, ExclusionReason::AbsentEverywhere)
-    });
-    unfit.map(|(name, reason)| NotTried {
-        name: name.clone(),
-        why: reason.to_string(),
-        needs: NotTried::OUR_MODEL.to_owned(),
     })
 }
 

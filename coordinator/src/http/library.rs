@@ -59,7 +59,7 @@ async fn add(
 ///
 /// Later searches do not try it; its effect stays in the catalogue of the service, and results stay as they are.
 #[utoipa::path(delete, path = "/library/{name}", operation_id = "remove_from_library", tag = "effects",
-    params(("name" = String, Path)), responses(
+    params(("name" = String, Path, description = "name of the law")), responses(
     (status = 200, description = "what was removed", body = LibraryLawRemoved),
     (status = 404, body = ErrorBody)))]
 async fn remove(

@@ -15,7 +15,7 @@ use super::stored_calibration::{FILES, has_posterior};
 use super::submission::role_of;
 use crate::study::{Lineage, StudyStep, most_probable};
 use farm::calibration::{Calibration, CalibrationIdentity};
-use job::{Job, Spec, continued_job, with_candidates, without_effects};
+use job::{Job, Spec, continued_job, effect_name, with_candidates, without_effects};
 use record::{CalibrationRow, Change, Extension, Membership, addition_name};
 use search::candidate::extended;
 use store::NewCalibrationRow;
@@ -28,8 +28,33 @@ impl Service {
     /// [`ServiceError`]: the effect is unknown, or the job has it already.
     pub async fn extend(&self, id: i64, extension: Extension) -> Result<CalibrationCreated, ServiceError> {
         let _growing = self.growing.lock().await;
-        let extension = self.with_user_effect(extension).await?;
+        let extension = match self.candidate_in_file(id, &extension).await? {
+            Some(candidate) => candidate,
+            None => self.with_user_effect(extension).await?,
+        };
         self.extended(id, &extension).await
+    }
+
+    /// Returns the effect that the search of a calibration's model tried as a file; `None` if it tried none of this name.
+    async fn candidate_in_file(
+        &self,
+        id: i64,
+        extension: &Extension,
+    ) -> Result<Option<Extension>, ServiceError> {
+        let Extension::Effect(named) = extension else {
+            return Ok(None);
+        };
+        let row = self.calibration_row(id).await?;
+        let rows = self.store().reader().study(row.study).await?;
+        let Some(search) = Lineage::new(&rows).search_of(id) else {
+            return Ok(None);
+        };
+        let mut files = search.job.files.iter();
+        let candidate = files.find(|(_, text)| effect_name(text).as_deref() == Some(named.as_str()));
+        Ok(candidate.map(|(name, text)| Extension::File {
+            name: name.clone(),
+            text: text.clone(),
+        }))
     }
 
     async fn extended(&self, id: i64, extension: &Extension) -> Result<CalibrationCreated, ServiceError> {

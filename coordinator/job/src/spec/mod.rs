@@ -76,6 +76,8 @@ pub struct Spec {
     pub discovery: DiscoverySettings,
     /// Names of the plausibility questions whose odd values are intended.
     pub accepted: Vec<String>,
+    /// Texts of the effects that a search tries beside the catalogue, in the order of the job.
+    pub candidates: Vec<String>,
     /// Number of models that the job compares, this one included; 1 if it has a table `[model]`.
     pub models: usize,
 }
@@ -125,6 +127,10 @@ impl Spec {
         experiment: Arc<Experiment>,
     ) -> Result<Spec, FileError> {
         let in_job = |message: String| FileError::whole(job_name, message);
+        let candidates = job.candidate_files.iter();
+        let candidates = candidates
+            .filter_map(|file| job.files.text(file).map(str::to_owned))
+            .collect();
         let in_data = |error: DataError| FileError::whole(experiment_name, error.to_string());
         let bevameter = BevameterReadings::new(&experiment).map_err(in_data)?;
         let stiffness = StiffnessErrors {
@@ -161,6 +167,7 @@ impl Spec {
             bevameter,
             discovery: job.discovery,
             accepted: job.accepted,
+            candidates,
             models: job.models,
         })
     }

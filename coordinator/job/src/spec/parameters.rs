@@ -13,7 +13,7 @@ use crate::data::noise;
 use crate::data::shared_sd::{SharedSd, StiffnessErrors};
 use crate::job::Job;
 use crate::table::posterior_prior::JointPrior;
-use crate::table::prior_entry::{FreeParameter, ParsedPrior, check_effect};
+use crate::table::prior_entry::{FreeParameter, ParsedPrior, check_candidate};
 
 /// The model with its fixed parameters, and the free parameters.
 pub(super) struct Parameters {
@@ -89,19 +89,19 @@ fn effects(name: &str, job: &Job) -> Result<EffectSet, FileError> {
 
 /// Checks the files of the search's candidates.
 fn check_candidates(name: &str, job: &Job) -> Result<(), FileError> {
+    let mut names = BTreeSet::new();
     for file in &job.candidate_files {
         let effect = job.files.effect(file).unwrap_or_else(|| {
             let message = format!("file \"{file}\" is named but was not sent");
             Err(FileError::whole(name, message))
         })?;
-        check_effect(file, &effect)?;
-        if effect
-            .parameters
-            .iter()
-            .all(|parameter| parameter.neutral.is_none())
-        {
-            let message = "a candidate needs a strength: a parameter with `neutral`";
-            return Err(FileError::whole(file, message.to_owned()));
+        check_candidate(file, &effect)?;
+        if !names.insert(effect.name.clone()) {
+            let message = format!(
+                "[discovery] candidate_files has two files of the effect \"{}\"",
+                effect.name
+            );
+            return Err(FileError::whole(name, message));
         }
     }
     Ok(())

@@ -156,6 +156,25 @@ pub fn check_effect(file: &str, effect: &Effect) -> Result<(), FileError> {
     Ok(())
 }
 
+/// Checks an effect that a search is to try: it needs a strength, and priors that hold.
+///
+/// # Errors
+/// [`FileError`] of the file, with the line of a parameter.
+pub fn check_candidate(file: &str, effect: &Effect) -> Result<(), FileError> {
+    check_effect(file, effect)?;
+    match effect
+        .parameters
+        .iter()
+        .any(|parameter| parameter.neutral.is_some())
+    {
+        true => Ok(()),
+        false => {
+            let message = "a law that a search tries needs a strength: a parameter with `neutral`";
+            Err(FileError::whole(file, message.to_owned()))
+        }
+    }
+}
+
 /// Returns the parameters of an effect that its file leaves free, by their names in a job.
 ///
 /// # Errors

@@ -5,7 +5,7 @@
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use shared::file::{FileError, FileSet};
 use shared::model::ModelKind;
@@ -81,7 +81,8 @@ pub fn without_effects(name: &str, job: &FileSet, effects: &[String]) -> Result<
     Ok(text.beside(&files))
 }
 
-/// Returns a job whose search tries further effects, each with its file; a file that the job has already stays as it is.
+/// Returns a job whose search tries further effects, each with its file. What the job has already stays as it is: a file of that name,
+/// and a candidate that is the same effect.
 ///
 /// # Errors
 /// [`FileError`] if the text is no job, or `candidate_files` no list.
@@ -92,8 +93,12 @@ pub fn with_candidates(
 ) -> Result<FileSet, FileError> {
     let mut text = JobText::parse(name, &job.toml)?;
     let mut files = job.files.clone();
+    let named = text.candidate_files();
+    let named = named.iter().filter_map(|file| effect_name(job.files.get(file)?));
+    let mut named: BTreeSet<String> = named.collect();
     for (file, effect) in candidates {
-        if !files.contains_key(file) {
+        let is_new = effect_name(effect).is_none_or(|name| named.insert(name));
+        if is_new && !files.contains_key(file) {
             files.insert(file.clone(), effect.clone());
             text.add_candidate(file)?;
         }

@@ -2,7 +2,7 @@
 
 import { t } from "../language/language.js";
 import { slipUnit } from "../units.js";
-import { shown } from "../words/quantity.js";
+import { minus, shown } from "../words/quantity.js";
 
 /** @type {ConditionAxis[]} */
 export const CONDITIONS = [
@@ -23,6 +23,6 @@ export function spanWords(
   /** @type {number} */ from,
   /** @type {number} */ to,
 ) {
-  const text = (/** @type {number} */ v) => String(Number(v.toPrecision(3))).replace("-", "−");
+  const text = (/** @type {number} */ v) => minus(Number(v.toPrecision(3)));
   return `${axis.short} ${text(from)}${t` to `}${text(to)}${axis.unit === "1" ? "" : ` ${axis.unit}`}`;
 }

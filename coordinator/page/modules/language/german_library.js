@@ -11,13 +11,12 @@ export const LIBRARY = {
   "counts": "zählt",
   "alike": "gleiche",
   "beyond the range": "jenseits des Bereichs",
-  "formula": "Formel",
   "Formulas of the law": "Formeln des Gesetzes",
   "Formulas that the curve may follow": "Formeln, denen die Kurve folgen kann",
   "held": "bestätigt",
-  "Held in {0} of 1 study that counts ({1} nats).": "Bestätigt in {0} von 1 Studie, die zählt ({1} Nats).",
+  "Held in {0} of 1 study that counts ({1} nats).": "Bestätigt in {0} von 1 Studie, die zählt ({1} Nat).",
   "Held in {0} of {1} studies that count ({2} nats together).":
-    "Bestätigt in {0} von {1} Studien, die zählen (zusammen {2} Nats).",
+    "Bestätigt in {0} von {1} Studien, die zählen (zusammen {2} Nat).",
   "its parameters": "seine Parameter",
   "Library of laws": "Bibliothek der Gesetze",
   "No law has joined the library. A law that a search finds outside the catalogue is added to it under":
@@ -29,6 +28,7 @@ export const LIBRARY = {
   "no: its measurements count elsewhere": "nein: seine Messungen zählen anderswo",
   "No study counts as evidence yet.": "Noch zählt keine Studie als Beleg.",
   "not seen": "nicht gesehen",
+  "Remove {0} from the library": "{0} aus der Bibliothek nehmen",
   "Remove from the library": "Aus der Bibliothek nehmen",
   "Studies that tried the law": "Studien, die das Gesetz geprüft haben",
   "The first two differ most at a {0} of {1}{2} ({3} and {4}, {5} sds): a run there would split them.":

@@ -80,8 +80,10 @@ const PHRASES = {
   "nothing beyond the noise on held-out runs": "nichts über dem Rauschen bei zurückgehaltenen Fahrten",
   "nothing beyond the noise on fitted runs": "nichts über dem Rauschen bei angepassten Fahrten",
   "within the noise: ": "im Rauschen: ",
-  " on (held-out|fitted) runs cannot be judged: (?:its|their) noise is inferred together with the misfit":
-    " auf $1 runs: nicht zu beurteilen, weil das Rauschen mit der Abweichung zusammen geschätzt ist",
+  " on held-out runs cannot be judged: (?:its|their) noise is inferred together with the misfit":
+    " bei zurückgehaltenen Fahrten: nicht zu beurteilen, weil das Rauschen mit der Abweichung zusammen geschätzt ist",
+  " on fitted runs cannot be judged: (?:its|their) noise is inferred together with the misfit":
+    " bei angepassten Fahrten: nicht zu beurteilen, weil das Rauschen mit der Abweichung zusammen geschätzt ist",
   ", and on the (\\d+) of (\\d+) that lie between fitted runs by (.+?) where interpolation has ([\\d.,−-]+ (?:N m|mm|m|kN|N))":
     ", und bei den $1 von $2 zwischen angepassten Fahrten: $3, wo Interpolation $4 hat",
   ", and on (\\d+) of (\\d+) by (.+?) where interpolation has ([\\d.,−-]+ (?:N m|mm|m|kN|N))":
@@ -134,6 +136,7 @@ const PHRASES = {
   "not judged: (\\d+) effects?, of whose cause this model shows nothing":
     "nicht beurteilt: $1 Effekte, deren Ursache dieses Modell nicht abbildet",
   "these data cannot distinguish them": "diese Daten können sie nicht unterscheiden",
+  ": the prior is wrong, or an effect is missing": ": der Prior ist falsch, oder ein Effekt fehlt",
   " is missing: ": " fehlt: ",
   " is missing": " fehlt",
   "\\(probability ([>\\d. ]+), ([\\d.]+) nats over (.+?)(; most probably with [^)]+)?\\)":
@@ -194,7 +197,7 @@ const PHRASES = {
   "\\(grouser_count = 0: a smooth rim\\)": "(grouser_count = 0: glatter Umfang)",
   " under (?=\\[)": " unter ",
   // The diagnosis.
-  "the (\\d+) residuals are ([\\d.]+) times as large as expected from the assumed errors \\(chi-square ([\\d.e+]+) with ([\\d.]+) degrees of freedom, (p [=<] [^)]+)\\)":
+  "the (\\d+) residuals are ([\\d.]+) times as large as expected from the assumed errors \\(chi-square (\\S+) with ([\\d.]+) degrees of freedom, (p [=<] [^)]+)\\)":
     "die $1 Abweichungen sind das $2-Fache dessen, was die angenommenen Fehler erwarten lassen (Chi-Quadrat $3 bei $4 Freiheitsgraden, $5)",
   ": slightly more than the assumed errors explain": ": etwas mehr, als die angenommenen Fehler erklären",
   ": more than the assumed errors explain": ": mehr, als die angenommenen Fehler erklären",
@@ -211,8 +214,6 @@ const PHRASES = {
     "die Daten widersprechen dem Prior im Ganzen (Abstandsquadrat $1, erwartet $2, $3 unter $4 Prüfungen)",
   "the data pull (\\S+) into the tail of its prior \\((p [=<] \\S+) among (\\d+) tests?\\)":
     "die Daten ziehen $1 an den Rand seines Priors ($2 unter $3 Prüfungen)",
-  ": the prior is wrong, or an effect is missing": ": der Prior ist falsch, oder ein Effekt fehlt",
-  ": the prior is wrong, or an effect fehlt": ": der Prior ist falsch, oder ein Effekt fehlt",
   "interpolation between the fitted measurements predicts (drawbar pull|torque|sinkage|lateral force) better than the model: ([\\d.]+ \\S+(?: m)?) against ([\\d.]+ \\S+(?: m)?) on (\\d+) measurements of held-out runs, where the noise is ([\\d.]+ \\S+(?: m)?): the model misses something that the measurements show":
     "Interpolation zwischen den angepassten Messungen sagt besser voraus als das Modell ($1): $2 statt $3 bei $4 Messungen zurückgehaltener Fahrten, bei einem Rauschen von $5: dem Modell fehlt etwas, das die Messungen zeigen",
   // What the account says of the errors.
@@ -243,14 +244,14 @@ const PHRASES = {
   "([\\d.]+ (?:N m|N|mm)) in (?=drawbar pull|torque|sinkage|lateral force)": "$1 in ",
   // Names.
   "drawbar pull": "Zugkraft",
-  "(?<![\\w.])torque(?!\\w|\\.\\w)": "Drehmoment",
-  "(?<![\\w.])sinkage(?!\\w|\\.\\w)": "Einsinkung",
+  "(?<![\\w.-])torque(?![\\w-]|\\.\\w)": "Drehmoment",
+  "(?<![\\w.-])sinkage(?![\\w-]|\\.\\w)": "Einsinkung",
   "lateral force": "Seitenkraft",
   "wheel load": "Radlast",
   "slip angle": "Schräglaufwinkel",
   "sled speed": "Schlittengeschwindigkeit",
   "rim speed": "Umfangsgeschwindigkeit",
-  "(?<![\\w.])slip(?!\\w|\\.\\w)": "Schlupf",
+  "(?<![\\w.-])slip(?![\\w-]|\\.\\w)": "Schlupf",
   "(?<=berechnet )falls(?= )": "fällt",
   "(?<=berechnet )rises(?= )": "steigt",
   " with (?=[a-z]+_)": " mit ",
@@ -295,10 +296,10 @@ const ENGLISH = new RegExp(
  * @param {string} text
  */
 export function germanOf(text) {
-  if (text in NAMES) return NAMES[text];
-  let found = text;
+  if (Object.hasOwn(NAMES, text)) return NAMES[text];
+  let sentence = text;
   for (const [english, german] of Object.entries(EFFECTS))
-    if (found.includes(english)) found = found.replaceAll(english, german);
-  for (const [phrase, german] of COMPILED) found = found.replace(phrase, german);
-  return found === text || ENGLISH.test(found) ? null : found;
+    if (sentence.includes(english)) sentence = sentence.replaceAll(english, german);
+  for (const [phrase, german] of COMPILED) sentence = sentence.replace(phrase, german);
+  return sentence === text || ENGLISH.test(sentence) ? null : sentence;
 }

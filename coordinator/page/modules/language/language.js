@@ -49,13 +49,13 @@ const germanOf = language === "de" ? await ofService() : null;
 
 /** A sentence of the service in the language of the page; in English where that has no words for it. */
 export function told(/** @type {string} */ text) {
-  const found = germanOf?.(text);
-  return found === null || found === undefined ? text : decimal(found);
+  const german = germanOf?.(text) ?? null;
+  return german === null ? text : decimal(german);
 }
 
-/** A text with the decimal marks of the language of the page. */
+/** A text with the decimal marks of the language of the page; `v2.1`, `run-1.2` and dates are no numbers. */
 export const decimal = (/** @type {string} */ text) =>
-  language === "de" ? text.replace(/(\d)\.(?=\d)/g, "$1,") : text;
+  language === "de" ? text.replace(/(?<![\w.]|[A-Za-z_]-)(\d+)\.(?=\d+(?!\w|\.\d))/g, "$1,") : text;
 
 /** The place of a part that varies, within the text of a template. */
 const MARK = /\0(\d+)\0/g;

@@ -180,7 +180,7 @@ export function useTitles(/** @type {Member | undefined} */ model) {
 }
 
 /** Nats to a digit after the point, without a sign before 0. */
-const nats = (/** @type {number} */ value) => minus(value.toFixed(1)).replace(/^−(0\.0)$/, "$1");
+const nats = (/** @type {number} */ value) => minus(value.toFixed(1).replace(/^-(?=0\.0$)/, ""));
 
 /** Whether the best fit leaves an effect out: its parameters are 0. */
 const isAbsent = (/** @type {JudgedEffect} */ { parameters }) =>

@@ -1,9 +1,10 @@
 // The laws that joined the library: where each held, and what the studies say together.
 
 import { html, useState } from "../html.js";
-import { language, t } from "../language/language.js";
+import { language, t, translated } from "../language/language.js";
 import { path, removeFromLibrary } from "../rest/routes.js";
 import { useAnswer } from "../rest/use_answer.js";
+import { sentence } from "../words/clauses.js";
 import { digits, probability } from "../words/quantity.js";
 import { Failure, Pending } from "./message.js";
 import { Table } from "./table.js";
@@ -33,12 +34,14 @@ function Law({ law, onChange }) {
   return html`
     <section class="card">
       <div class="actions heading">
-        <h3>${law.summary} <small><code>${law.name}</code></small></h3>
-        <button type="button" onClick=${remove}>Remove from the library</button>
+        <h3>${translated(law.summary)} <small><code>${law.name}</code></small></h3>
+        <button type="button" aria-label=${t`Remove ${law.name} from the library`} onClick=${remove}>
+          Remove from the library
+        </button>
       </div>
       <${Failure} error=${error} />
       <p>${evidence(law)}</p>
-      <p class="note">${law.source}. ${t`Version ${law.version}, in the library since ${added}.`}</p>
+      <p class="note">${sentence(law.source)} ${t`Version ${law.version}, in the library since ${added}.`}</p>
       ${law.studies.length > 0 && html`<${Studies} studies=${law.studies} />`}
     </section>
   `;

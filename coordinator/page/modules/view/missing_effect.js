@@ -148,7 +148,7 @@ export function MissingEffect({ study, model, query, reload }) {
         <${LawChart}
           law=${outside}
           name=${study.name}
-          add=${isReport ? null : () => add({ effect_file: { name: "outside.toml", text: outside.effect_file } })}
+          add=${isReport ? null : () => add({ effect_file: effectFile(outside.effect_file) })}
         />
         ${
           outside.formulas &&
@@ -156,9 +156,7 @@ export function MissingEffect({ study, model, query, reload }) {
             <${Formulas}
               formulas=${outside.formulas}
               variable=${outside.depends_on}
-              add=${
-                isReport ? null : (/** @type {string} */ text) => add({ effect_file: { name: "formula.toml", text } })
-              }
+              add=${isReport ? null : (/** @type {string} */ text) => add({ effect_file: effectFile(text) })}
             />
           `
         }
@@ -200,3 +198,9 @@ function BenchTest(/** @type {{ text: string }} */ { text }) {
     </li>
   `;
 }
+
+/** An effect file under the name of its effect, so that a second law has another. */
+const effectFile = (/** @type {string} */ text) => ({
+  name: `${text.match(/^name = "(\w+)"/m)?.[1] ?? "law"}.toml`,
+  text,
+});

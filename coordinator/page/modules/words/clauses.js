@@ -8,7 +8,7 @@ import { capital, raised } from "./quantity.js";
  * between them.
  */
 export const said = (/** @type {string} */ text) =>
-  raised(told(text)).replace(/([<>=]|\bP) (?=[\d>< ])|(\d) (?=(?:N|mm|m|kN|kg)\b)/g, "$1$2\u00a0");
+  told(raised(text)).replace(/([<>=]|\bP) (?=[\d>< ])|(\d) (?=(?:N|mm|m|kN|kg)\b)/g, "$1$2\u00a0");
 
 /** The same as a sentence. */
 export const sentence = (/** @type {string} */ text) => capital(/[.!?]$/.test(text) ? said(text) : `${said(text)}.`);

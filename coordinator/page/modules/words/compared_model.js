@@ -42,7 +42,7 @@ function evidence(/** @type {ComparedModel} */ { log_evidence: log, log_evidence
   if (log === null || log === undefined) return "–";
   if (!se || se < 0) return minus(log.toFixed(1));
   const decimals = Math.max(0, 1 - Math.floor(Math.log10(se)));
-  return `${minus(log.toFixed(decimals))} ± ${se.toFixed(decimals)}`;
+  return `${minus(log.toFixed(decimals))} ± ${minus(se.toFixed(decimals))}`;
 }
 
 /** What is decided about a model. */

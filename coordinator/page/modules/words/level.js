@@ -1,5 +1,6 @@
 // Levels of a condition: what a rig was set to, from values that repeat, scatter or are typed with rounding.
 
+import { minus } from "./quantity.js";
 import { t } from "../language/language.js";
 
 /** Values closer than this share of the value are equal: rig settings that were typed or computed with rounding. */
@@ -92,7 +93,7 @@ export function levelWords(
   scale = 1,
 ) {
   const rounded = (/** @type {number} */ value, /** @type {number} */ count) =>
-    String(Number((value * scale).toPrecision(count)));
+    minus(Number((value * scale).toPrecision(count)));
   if (high - low <= SCATTER * high)
     return `${high - low <= EQUAL * high ? "" : "≈ "}${rounded((low + high) / 2, 3)} ${unit}`;
   const step = 10 ** (Math.floor(Math.log10(high)) - 1);

@@ -10,6 +10,6 @@ mod round;
 mod summary;
 
 pub use numerical_noise::numerical_noise;
-pub use round::{DiscoveryRound, effect_file, effect_files};
+pub use round::{DiscoveryRound, effect_file, effect_files, law_files};
 pub use round::{arguments, word};
 pub use summary::DiscoverySummary;

@@ -1,7 +1,7 @@
 //! A finished search of a study: its verdict's name, its effect file, and the arguments of its command.
 
 use job::effect_name;
-use record::{Discovery, Extension, Verdict};
+use record::{Discovery, Extension, Outside, Verdict};
 
 /// A finished search of a study.
 #[derive(Debug, Clone)]
@@ -30,19 +30,30 @@ pub fn effect_file(record: &Discovery) -> Option<(String, String)> {
         (_, Some(outside)) => &outside.effect_file,
         _ => return None,
     };
-    Some((format!("{}.toml", effect_name(text)?), text.clone()))
+    named_file(text)
 }
 
 /// Returns the names and the texts of a search's effect files: that of the effect to add, and of the formulas of a law.
 pub fn effect_files(record: &Discovery) -> Vec<(String, String)> {
-    let formulas = record.outside.iter().flat_map(|outside| &outside.formulas);
-    let formulas = formulas
-        .flat_map(|formulas| &formulas.classes)
-        .filter_map(|class| {
-            let name = effect_name(&class.effect_file)?;
-            Some((format!("{name}.toml"), class.effect_file.clone()))
-        });
+    let formulas = record.outside.iter().flat_map(formula_files);
     effect_file(record).into_iter().chain(formulas).collect()
+}
+
+/// Returns the names and the texts of the effect files of the law outside the library that a search found: its curve or form, then its
+/// formulas.
+pub fn law_files(record: &Discovery) -> Vec<(String, String)> {
+    let file = |outside: &Outside| named_file(&outside.effect_file);
+    let law = record.outside.iter().filter_map(file);
+    law.chain(record.outside.iter().flat_map(formula_files)).collect()
+}
+
+fn formula_files(outside: &Outside) -> impl Iterator<Item = (String, String)> {
+    let classes = outside.formulas.iter().flat_map(|formulas| &formulas.classes);
+    classes.filter_map(|class| named_file(&class.effect_file))
+}
+
+fn named_file(text: &str) -> Option<(String, String)> {
+    Some((format!("{}.toml", effect_name(text)?), text.to_owned()))
 }
 
 /// Returns the arguments of the command that adds the named effect; `folder` contains its effect file.

@@ -1,8 +1,9 @@
 //! The effect files of a law, under names that are free in the job.
 
+use std::collections::BTreeSet;
+
 use job::{NamedFiles, effect_name};
 use record::Extension;
-use shared::model::EffectText;
 
 use super::dependence::Dependence;
 use super::form::LawForm;
@@ -23,18 +24,17 @@ impl LawFiles {
     /// have it. Checked by `tests::a_law_that_a_job_has_is_not_offered_again`.
     ///
     /// # Arguments
-    /// - `files`, `effects`: the files and the effects that the job has.
+    /// - `files`: those that the job has. `taken`: the names of the effects of its model and of its candidate files.
     pub(crate) fn addable(
         dependence: &Dependence,
         files: &NamedFiles,
-        effects: &[EffectText],
+        taken: &BTreeSet<String>,
     ) -> Option<LawFiles> {
         let is_new = |law: &CandidateEffect| {
             let Extension::File { text, .. } = &law.extension else {
                 return true;
             };
-            let name = effect_name(text);
-            effects.iter().all(|effect| Some(&effect.name) != name.as_ref())
+            effect_name(text).is_none_or(|name| !taken.contains(&name))
         };
         let forms = LawForm::ALL.into_iter().filter(|form| form.suits(dependence));
         let forms = forms.map(|form| (form, form.effect(dependence)));
@@ -86,10 +86,11 @@ mod tests {
     /// Names of the curve and of the forms that the job can add, for the shear stress against the normal velocity.
     fn addable(job: &FileSet, experiment: &FileSet) -> Option<(String, Vec<String>)> {
         let spec = spec_of(job, experiment).unwrap();
+        let effects = spec.fit_variant.effects.iter().map(|effect| effect.name.clone());
         let files = LawFiles::addable(
             &dependence(&spec),
             &NamedFiles::from(&job.files),
-            &spec.fit_variant.effects,
+            &effects.collect(),
         )?;
         let forms = files.forms.iter();
         let names = forms.map(|(form, law)| format!("{}: {}", form.name(), file(law)));

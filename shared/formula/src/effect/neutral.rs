@@ -92,7 +92,13 @@ impl Parameter {
             Some([number(a)?, number(b)?])
         };
         let prior_centre = || {
-            let uniform = || pair("uniform").map(|[a, b]| f64::midpoint(a, b));
+            // The middle of a uniform prior about the neutral value would be that.
+            let uniform = || {
+                pair("uniform").map(|[a, b]| match f64::midpoint(a, b) {
+                    middle if Some(middle) == self.neutral => b,
+                    middle => middle,
+                })
+            };
             let loguniform = || pair("loguniform").map(|[a, b]| libm::sqrt(a * b));
             let normal = || pair("normal").map(|[mean, sd]| mean + sd);
             let lognormal = || pair("lognormal").map(|[median, _]| median);
@@ -169,13 +175,16 @@ mod tests {
                 assert_ne!(parameter.shown_at(), parameter.neutral, "{name}");
             }
         }
-        // A normal prior about the neutral value, without a typical value.
-        let text = effect("drawbar_pull * (1 + a)", 0.0)
-            .text
-            .replace("half_normal = 0.1", "normal = [0.0, 0.2]");
-        let about_neutral = Effect::read(&text).expect("an effect");
-        assert_eq!(about_neutral.parameters[0].shown_at(), Some(0.2));
-        assert!(!about_neutral.is_absent_at(&[(Variable::SlipAngle, 0.0)]));
+        // Priors about the neutral value, without a typical value.
+        for prior in ["normal = [0.0, 0.2]", "uniform = [-0.2, 0.2]"] {
+            let text = effect("drawbar_pull * (1 + a)", 0.0).text;
+            let about_neutral = Effect::read(&text.replace("half_normal = 0.1", prior)).expect("an effect");
+            assert_eq!(about_neutral.parameters[0].shown_at(), Some(0.2), "{prior}");
+            assert!(
+                !about_neutral.is_absent_at(&[(Variable::SlipAngle, 0.0)]),
+                "{prior}"
+            );
+        }
     }
 
     #[test]
