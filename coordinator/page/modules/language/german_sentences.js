@@ -155,9 +155,11 @@ export const SENTENCES = {
     "Formen einer Klasse können diese Daten nicht unterscheiden. Die Wahrscheinlichkeiten gelten unter den Formen, die alle denselben Prior haben.",
   "these runs are held out already: choose runs that are fitted":
     "diese Fahrten sind schon zurückgehalten: wählen Sie angepasste Fahrten",
-  "they tell little of {0}: its value is that of the prior": "sie sagen wenig über {0}: der Wert ist der des Priors",
-  "they tell little of {0}: their values are those of the priors":
-    "sie sagen wenig über {0}: ihre Werte sind die der Priors",
+  "This model is off by more than the noise: {0}.": "Dieses Modell irrt um mehr als das Rauschen: {0}.",
+  "they tell little of {0}: its uncertainty is about that of the prior":
+    "sie sagen wenig über {0}: seine Unsicherheit ist etwa die des Priors",
+  "they tell little of {0}: their uncertainties are about those of the priors":
+    "sie sagen wenig über {0}: ihre Unsicherheiten sind etwa die der Priors",
   "The study is paused before its first calibration has finished.":
     "Die Studie ist angehalten, bevor ihre erste Kalibrierung fertig wurde.",
   "has the button that resumes it.": "hat den Knopf, der sie fortsetzt.",

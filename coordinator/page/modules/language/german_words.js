@@ -42,7 +42,7 @@ export const WORDS = {
   "above the diagonal: rank correlations": "über der Diagonale: Rangkorrelationen",
   "absent: its best fit changes no prediction by a tenth of its error sd":
     "fehlt: die beste Anpassung ändert keine Vorhersage um ein Zehntel ihrer Fehler-Standardabweichung",
-  "absent: the best fit does without it": "fehlt: die beste Anpassung kommt ohne ihn aus",
+  "absent: alone, the best fit does without it": "fehlt: allein kommt die beste Anpassung ohne ihn aus",
   "acceptance rate": "Annahmerate",
   "across": "waagrecht",
   "Add": "Hinzufügen",

@@ -87,7 +87,7 @@ export function Explanations({ record, unchanged, ghost, kept, show, keep, add, 
                 <td>
                   ${
                     isAbsent(effect)
-                      ? html`<span class="note">absent: the best fit does without it</span>`
+                      ? html`<span class="note">absent: alone, the best fit does without it</span>`
                       : unchanged.has(effect.name)
                         ? html`
                             <span class="note">

@@ -53,8 +53,12 @@ export function NewRuns({ study, model, record, comparison, reload, follow, furt
     angle: "",
     values: {},
   });
+  // Runs are proposed for the wheel of the first fitted run, straight ahead.
+  const first = comparison.rows.find((r) => r.use === "fit");
   const proposed = record.next_runs.map((r, k) => ({
     ...blank(k),
+    rig: rigs.find((rig) => rig.wheel === first?.wheel)?.label ?? "",
+    angle: isAngled ? "0" : "",
     slip: typed(r.slip, slipUnit),
     load: typed(r.wheel_load_n, shown("N")),
     speed: typed(r.sled_speed_m_s, shown("m/s")),

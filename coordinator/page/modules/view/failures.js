@@ -24,6 +24,8 @@ import { hasErrorsBesideNoise, hasOnlyNoise, residualSds } from "../words/residu
 
 /** Number of sds beyond which residuals have one colour. */
 const MOST_SDS = 4;
+/** Cells narrower than this [px] stand without a gap, which would take their colour. */
+const LEAST_GAPPED = 4;
 /** Number of colour steps per sd in a picture of many cells. */
 const STEPS = 4;
 /** Height of a cell [px]. */
@@ -195,7 +197,10 @@ function HeatMap({ rows, order, errors, named, name }) {
         interpolate: mix,
       },
       marks: [
-        Plot.cell(judged, byRun(judged, { x: "run", y: "channel", fill, inset: runs.length > 200 ? 0 : 0.5 }, isMany)),
+        Plot.cell(
+          judged,
+          byRun(judged, { x: "run", y: "channel", fill, inset: width < LEAST_GAPPED * runs.length ? 0 : 0.5 }, isMany),
+        ),
         Plot.dot(held, isMany ? byRun(held, { ...heldLook, r: 1 }, true) : { ...heldLook, r: isNamed(width) ? 2 : 1 }),
         // The words are made of the run that is pointed at alone.
         Plot.tip(

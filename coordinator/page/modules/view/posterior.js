@@ -7,6 +7,7 @@ import { JointPicture, PairPlot } from "../chart/pairs.js";
 import { html, useState } from "../html.js";
 import { t } from "../language/language.js";
 import { Failure, Pending } from "../part/message.js";
+import { KnownWrong } from "../part/known_wrong.js";
 import { NoModel } from "../part/no_model.js";
 import { ParameterTable } from "../part/parameter_table.js";
 import { errorOf, isReport } from "../rest/answers.js";
@@ -26,6 +27,7 @@ export function Posterior({ study, model }) {
   if (!answer) return html`<${Pending} answer=${answer} error=${error} what="The posterior" />`;
   const marginals = answer.marginals.map((m) => ({ ...m, ...m.parameter }));
   return html`
+    <${KnownWrong} model=${model} />
     <${Pictures} key=${model.id} marginals=${marginals} pairs=${answer.posteriors} model=${model} />
     <h2>Parameters</h2>
     <${ParameterTable} marginals=${marginals} line=${line} />

@@ -109,8 +109,8 @@ function informed(/** @type {Pick<Diagnostics, "parameters">} */ { parameters })
         level: "fair",
         text:
           little.length === 1
-            ? t`they tell little of ${list(little)}: its value is that of the prior`
-            : t`they tell little of ${list(little)}: their values are those of the priors`,
+            ? t`they tell little of ${list(little)}: its uncertainty is about that of the prior`
+            : t`they tell little of ${list(little)}: their uncertainties are about those of the priors`,
       };
 }
 
