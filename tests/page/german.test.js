@@ -170,8 +170,7 @@ const ENGLISH = Object.entries(GERMAN)
       ),
   );
 /** Sentences of the service, which stay English, and names as they are written in files. */
-const OF_SERVICE =
-  /^\w+_\w+|^synthetic tests of|\.$|^it changes nothing at|(is|are) not stated; |^\d+ fitted runs with/;
+const OF_SERVICE = /^\w+_\w+|\.$|^it changes nothing at|(is|are) not stated; |^\d+ fitted runs with/;
 
 /** Texts and labels that a person sees or hears, with everything unfolded. */
 const textsOfPage = () =>

@@ -77,3 +77,14 @@ test("numbers have the decimal mark of the language", () => {
   );
   assert.deepEqual(meanAndSd(9.3551, 0.613), { mean: "9,36", sd: "0,61" });
 });
+
+test("title and summary of every example are German", async () => {
+  const { readFile } = await import("node:fs/promises");
+  const source = await readFile(new URL("../../src/example.rs", import.meta.url), "utf8");
+  const texts = [...source.matchAll(/(?:title|summary): "([^"]+)"/g)].map(([, text]) => text);
+  assert.ok(texts.length >= 8);
+  assert.deepEqual(
+    texts.filter((text) => told(text) === text),
+    [],
+  );
+});

@@ -40,6 +40,8 @@ export const SENTENCES = {
     "Jenseits der Ziehungen: die gestrichelten Kurven extrapolieren. {0}",
   "Cancel for good? Its stages so far stay, and it cannot go on.":
     "Endgültig abbrechen? Die bisherigen Stufen bleiben, und sie kann nicht fortgesetzt werden.",
+  "Weighed with an assumed value, and therefore never named":
+    "Mit einem angenommenen Wert gewogen, und darum nie benannt",
   "Cannot be judged, as the experiment is described": "Nicht zu beurteilen, wie das Experiment beschrieben ist",
   "Choose for each quantity the column of {0} and its unit. Blank fields stay unmeasured.":
     "Wählen Sie für jede Größe die Spalte von {0} und ihre Einheit. Leere Felder bleiben ungemessen.",

@@ -285,6 +285,22 @@ const NAMES = {
   "sd of the lateral force": "Standardabweichung der Seitenkraft",
 };
 
+/** Titles and summaries of the examples. @type {Record<string, string>} */
+const EXAMPLES = {
+  "A hidden effect": "Ein verborgener Effekt",
+  "synthetic tests of a smooth wheel: the model misses one effect, which is found, added and checked on held-out runs":
+    "künstliche Versuche mit einem glatten Rad: dem Modell fehlt ein Effekt, der gefunden, hinzugefügt und an zurückgehaltenen Fahrten geprüft wird",
+  "Measured sand: calibration": "Gemessener Sand: Kalibrierung",
+  "single-wheel tests of a smooth and a grousered wheel by Carnegie Mellon University: one calibration of the base model":
+    "Einzelradversuche mit einem glatten und einem Stollenrad der Carnegie Mellon University: eine Kalibrierung des Grundmodells",
+  "Measured sand: what is missing": "Gemessener Sand: was fehlt",
+  "the same tests: a search for the effect that the model misses, which is added and searched again":
+    "dieselben Versuche: eine Suche nach dem Effekt, der dem Modell fehlt; er wird hinzugefügt, und dann wird wieder gesucht",
+  "Which of three models": "Welches von drei Modellen",
+  "synthetic tests of a smooth wheel: three models are calibrated and compared by evidence and on held-out runs":
+    "künstliche Versuche mit einem glatten Rad: drei Modelle werden kalibriert und nach Evidenz und an zurückgehaltenen Fahrten verglichen",
+};
+
 /** Words that a sentence in German does not have. */
 const ENGLISH = new RegExp(
   "(?<![\\w.[-])(the|is|are|of|and|than|as|does|about|among|a|it|where|that|with|by|runs?|from|has|its|no|not|under|to|which|wheel|model|noise|missing|runs|measure|further|effects?|most|load|other|there|least|larger?)(?!\\w|\\.\\w|\\]|-)",
@@ -297,6 +313,7 @@ const ENGLISH = new RegExp(
  */
 export function germanOf(text) {
   if (Object.hasOwn(NAMES, text)) return NAMES[text];
+  if (Object.hasOwn(EXAMPLES, text)) return EXAMPLES[text];
   let sentence = text;
   for (const [english, german] of Object.entries(EFFECTS))
     if (sentence.includes(english)) sentence = sentence.replaceAll(english, german);

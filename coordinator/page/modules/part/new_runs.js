@@ -119,7 +119,7 @@ export function NewRuns({ study, model, record, comparison, reload, follow, furt
     isNumber = true,
   ) =>
     html`
-      <td>
+      <td data-label=${label}>
         <input
           aria-label=${label}
           inputmode=${isNumber ? "decimal" : "text"}
@@ -133,7 +133,7 @@ export function NewRuns({ study, model, record, comparison, reload, follow, furt
   return html`
     <h3>${follow ? t`The next run that you have made` : t`Add runs that you have made`}</h3>
     <form onSubmit=${send} class="new-runs">
-      <div class="scroll" tabindex="0" role="region" aria-label="New runs">
+      <div class="scroll stacked" tabindex="0" role="region" aria-label="New runs">
         <table>
           <thead>
             <tr>
@@ -154,7 +154,7 @@ export function NewRuns({ study, model, record, comparison, reload, follow, furt
                   ${
                     rigs.length > 1 &&
                     html`
-                      <td>
+                      <td data-label=${t`wheel of run ${k + 1}`}>
                         <select
                           aria-label=${t`wheel of run ${k + 1}`}
                           value=${row.rig}

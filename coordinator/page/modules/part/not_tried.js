@@ -10,41 +10,39 @@ function folded(/** @type {string[]} */ names) {
   return names.filter((name) => !name.includes(".") || !names.includes(name.split(".")[0]));
 }
 
+/** @typedef {{ names: string[], why: string, needs: string }} Reason */
+
+/** Effects that are not tried, those of one reason together. */
+function byReason(/** @type {NonNullable<Discovery["not_tried"]>} */ untried) {
+  /** @type {Map<string, Reason>} */
+  const reasons = new Map();
+  for (const { name, why, needs } of untried) {
+    const reason = reasons.get(`${why} ${needs}`) ?? { names: [], why, needs };
+    reason.names.push(name);
+    reasons.set(`${why} ${needs}`, reason);
+  }
+  return [...reasons.values()];
+}
+
 /** @param {{ record: Discovery }} properties */
 export function NotTried({ record }) {
-  /** @type {Map<string, { names: string[], why: string, needs: string }>} */
-  const untried = new Map();
-  for (const { name, why, needs } of record.not_tried ?? []) {
-    const same = untried.get(`${why} ${needs}`) ?? { names: /** @type {string[]} */ ([]), why, needs };
-    same.names.push(name);
-    untried.set(`${why} ${needs}`, same);
-  }
+  // What needs a value that the experiment lacks is weighed with a typical one, has its row above, and is never named.
+  const weighed = new Set(record.effects.map((effect) => effect.name));
+  const untried = record.not_tried ?? [];
   const lists = /** @type {[string, string[]][]} */ ([
     [t`too weak to be seen with these data at usual strength`, record.cannot_exclude],
     [t`refused by the model at every strength`, record.refused],
     [t`no longer improves the evidence`, record.drop],
   ]);
   return html`
-    ${
-      untried.size > 0 &&
-      html`
-        <h2>Cannot be judged, as the experiment is described</h2>
-        <ul>
-          ${[...untried.values()].map(
-            (same) => html`
-              <li>
-                <b>${folded(same.names).join(", ")}</b>: ${said(same.why)}.${" "}
-                ${
-                  same.needs.startsWith("runs ")
-                    ? t`To be measured: ${translated(same.needs)}.`
-                    : html`To be stated: <code>${same.needs}</code>.`
-                }
-              </li>
-            `,
-          )}
-        </ul>
-      `
-    }
+    <${Reasons}
+      title=${t`Weighed with an assumed value, and therefore never named`}
+      reasons=${byReason(untried.filter((effect) => weighed.has(effect.name)))}
+    />
+    <${Reasons}
+      title=${t`Cannot be judged, as the experiment is described`}
+      reasons=${byReason(untried.filter((effect) => !weighed.has(effect.name)))}
+    />
     ${lists
       .filter(([, names]) => names.length > 0)
       .map(
@@ -55,5 +53,26 @@ export function NotTried({ record }) {
           </details>
         `,
       )}
+  `;
+}
+
+function Reasons(/** @type {{ title: string, reasons: Reason[] }} */ { title, reasons }) {
+  if (reasons.length === 0) return null;
+  return html`
+    <h2>${title}</h2>
+    <ul>
+      ${reasons.map(
+        ({ names, why, needs }) => html`
+          <li>
+            <b>${folded(names).join(", ")}</b>: ${said(why)}.${" "}
+            ${
+              needs.startsWith("runs ")
+                ? t`To be measured: ${translated(needs)}.`
+                : html`To be stated: <code>${needs}</code>.`
+            }
+          </li>
+        `,
+      )}
+    </ul>
   `;
 }

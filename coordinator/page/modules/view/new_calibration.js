@@ -3,7 +3,7 @@
 import { experimentOf, fileOf, find, kindOf, missing, named, requests } from "../draft.js";
 import { author } from "../author.js";
 import { html, useEffect, useRef, useState } from "../html.js";
-import { t } from "../language/language.js";
+import { t, told } from "../language/language.js";
 import { DropZone } from "../part/drop_zone.js";
 import { FileCard } from "../part/file_card.js";
 import { JobCheck } from "../part/job_check.js";
@@ -173,7 +173,7 @@ export function NewCalibration({ query }) {
               html`
                 <li>
                   <button type="button" onClick=${() => open(e.name)}>${e.name}</button>${" "}
-                  <span><b>${e.title}</b>: <span class="note">${e.summary}</span></span>
+                  <span><b>${told(e.title)}</b>: <span class="note">${told(e.summary)}</span></span>
                 </li>
               `,
           )}
