@@ -56,7 +56,7 @@ fn a_store_goes_to_a_file_to_a_server_and_to_a_file_with_every_bit_and_goes_on_t
     let file = |name: &str| format!("sqlite://{}", service.folder().join(name).display());
     let (first, second) = (file("first.db"), file("second.db"));
     let output = copy(service.store_name(), &first);
-    assert_contains!(output, "evaluations", "tables: 19\n");
+    assert_contains!(output, "evaluations", "tables: 20\n");
     let server = ServerDatabase::new().expect("GROUSER_TEST_POSTGRES names a server");
     let there = copy(&first, &server.url());
     let table_lines = |output: &str| {

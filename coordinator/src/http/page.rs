@@ -10,6 +10,8 @@ use axum::http::{HeaderMap, StatusCode, Uri};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use page::asset::{DOCS, INDEX, asset};
+use tower_http::CompressionLevel;
+use tower_http::compression::CompressionLayer;
 
 use super::error::{Name, no_route};
 use crate::service::Service;
@@ -36,6 +38,8 @@ pub(super) fn routes() -> Router<Service> {
             &format!("{FOLDER}{{*path}}"),
             get(async |Name(path): Name, uri: Uri, headers: HeaderMap| file(&path, uri, headers).await),
         )
+        // A browser keeps these files, so they are worth more time than answers; the layer of all routes leaves them as they are.
+        .layer(CompressionLayer::new().quality(CompressionLevel::Best))
 }
 
 /// Returns a file, or the status 304 if the browser has it.
