@@ -104,7 +104,7 @@ test("the rival of an effect that was added stays in story and list, with the ru
     const text = await missing.textContent();
     assert.match(
       text,
-      /slip_sinkage \(P 0\.54\) is added.*slip_softened_pressure \(P 0\.46\) in place of slip_sinkage cannot be excluded\.\s*Slip 0\.80 under 280 N/i,
+      /slip_sinkage \(P\s0\.54\) is added.*slip_softened_pressure \(P\s0\.46\) in place of slip_sinkage cannot be excluded\.\s*Slip 0\.80 under 280\sN/i,
     );
     assert.equal(await page.getByText("It could also be").count(), 0);
     await shot(page, "story-class");
