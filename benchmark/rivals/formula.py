@@ -103,7 +103,7 @@ def judge(case, formulas):
             more.append(verdict(case, text))
         except (ValueError, TypeError, SyntaxError, AttributeError, OverflowError, sympy.SympifyError):
             more.append(None)
-    is_true = lambda found, allowed: found is not None and found <= allowed
+    is_true = lambda extra, allowed: extra is not None and extra <= allowed
     return {"first": [is_true(more[0], k) for k in (0, 1)], "any": [any(is_true(m, k) for m in more) for k in (0, 1)]}
 
 
@@ -137,8 +137,8 @@ def table(cases, results):
         for name in METHODS:
             runs = [r for r in results if r["method"] == name and r["noise"] == noise]
             if runs:
-                of = lambda key, k: f"{np.mean([r[key][k] for r in runs]):.2f}"
-                print(f"| {name} | {noise:.0%} | {len(runs)} | {of('first', 0)} ({of('first', 1)}) | {of('any', 0)} ({of('any', 1)}) "
+                mean = lambda key, k: f"{np.mean([r[key][k] for r in runs]):.2f}"
+                print(f"| {name} | {noise:.0%} | {len(runs)} | {mean('first', 0)} ({mean('first', 1)}) | {mean('any', 0)} ({mean('any', 1)}) "
                       f"| {np.mean([r['seconds'] for r in runs]):.1f} |")
 
 

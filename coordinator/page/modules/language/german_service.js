@@ -8,7 +8,7 @@ import { EFFECTS } from "./german_effects.js";
  * @type {Record<string, string>}
  */
 const PHRASES = {
-  // What contains other phrases.
+  // These phrases contain others, so they stand first.
   "search the library for the effect that the model is missing":
     "die Bibliothek nach dem Effekt durchsuchen, der dem Modell fehlt",
   "something is missing or the prior is wrong: ": "etwas fehlt, oder der Prior ist falsch: ",
@@ -113,7 +113,7 @@ const PHRASES = {
   "under-predicted in (?:every run|all runs)": "in jeder Fahrt zu niedrig berechnet",
   "over-predicted": "zu hoch berechnet",
   "under-predicted": "zu niedrig berechnet",
-  // What is missing.
+  // These phrases say what is missing.
   "this model was not searched": "dieses Modell wurde nicht durchsucht",
   " was missing \\((P [^)]+)\\) and is added": " fehlte ($1) und ist hinzugefügt",
   " \\((P [^)]+)\\) is added": " ($1) ist hinzugefügt",
@@ -242,7 +242,7 @@ const PHRASES = {
   " \\(([\\d.]+) times the error\\)": " (das $1-Fache des Fehlers)",
   "The wheels are smooth rims: no grousers are declared": "Die Räder sind glatt: es sind keine Stollen angegeben",
   "([\\d.]+ (?:N m|N|mm)) in (?=drawbar pull|torque|sinkage|lateral force)": "$1 in ",
-  // Names.
+  // These are names.
   "drawbar pull": "Zugkraft",
   "(?<![\\w.-])torque(?![\\w-]|\\.\\w)": "Drehmoment",
   "(?<![\\w.-])sinkage(?![\\w-]|\\.\\w)": "Einsinkung",
