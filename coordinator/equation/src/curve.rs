@@ -50,7 +50,7 @@ pub enum CurveError {
 #[derive(Debug, Clone)]
 pub struct LocatedCurve {
     pub(crate) host: Host,
-    /// The greatest magnitude of the variable, by which it is divided.
+    /// The greatest magnitude of the variable, to three digits, by which it is divided.
     pub(crate) scale: f64,
     /// Points over the scale.
     pub(crate) points: Vec<f64>,
@@ -173,7 +173,7 @@ impl LocatedCurve {
         whitening: &DMatrix<f64>,
         of_knots: &DMatrix<f64>,
     ) -> Self {
-        let scale = points[points.len() - 1].abs().max(points[0].abs());
+        let scale = short(points[points.len() - 1].abs().max(points[0].abs()));
         let points: Vec<f64> = points.iter().map(|x| x / scale).collect();
         let shares = (0..POINTS).map(|i| i as f64 / (POINTS - 1) as f64);
         let sd = |share: f64| {
@@ -211,11 +211,26 @@ impl LocatedCurve {
         self.whitening.iter().map(product).collect()
     }
 
+    /// Returns the sd of the curve at a value of the variable within its range.
+    #[must_use]
+    pub fn sd(&self, at: f64) -> f64 {
+        let grid = &self.grid;
+        let at = at / self.scale;
+        let right = grid.partition_point(|x| *x <= at).clamp(1, grid.len() - 1);
+        let share = (at - grid[right - 1]) / (grid[right] - grid[right - 1]);
+        self.sds[right - 1] + share * (self.sds[right] - self.sds[right - 1])
+    }
+
     /// Returns the range of the variable.
     #[must_use]
     pub fn range(&self) -> [f64; 2] {
         [self.points[0], self.points[self.points.len() - 1]].map(|x| x * self.scale)
     }
+}
+
+/// Returns a number to three digits, so that formulas in which it stands are short.
+fn short(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
 }
 
 /// Returns the place at a share of the way through a list, by straight lines.

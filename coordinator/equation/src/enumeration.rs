@@ -50,7 +50,8 @@ impl FormulaLibrary {
     }
 
     /// Returns the logarithm of a formula's share among the formulas of its size.
-    pub(crate) fn log_prior(&self, tree: &Tree) -> f64 {
+    #[must_use]
+    pub fn log_prior(&self, tree: &Tree) -> f64 {
         libm::log(weight(tree) / self.sums[tree.size])
     }
 
@@ -132,7 +133,7 @@ fn pairs<'a>(
 /// Returns what two formulas of the same values have in common; `None` where a formula is nowhere defined or does not vary.
 ///
 /// # Arguments
-/// - `is_root`: whether formulas count as equal up to a factor and to the order of their constants.
+/// - `is_root`: whether formulas count as equal up to a factor, and to the order and the signs of their constants.
 fn key(tree: &Tree, is_root: bool) -> Option<Vec<u32>> {
     let program = Program::new(tree);
     let orders: &[[usize; CONSTANTS]] = match (is_root, tree.constants) {
@@ -140,9 +141,11 @@ fn key(tree: &Tree, is_root: bool) -> Option<Vec<u32>> {
         (true, 3) => &[[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]],
         _ => &[[0, 1, 2]],
     };
-    let values = |order: &[usize; CONSTANTS]| -> Vec<u32> {
+    let masks = if is_root { 1 << tree.constants } else { 1 };
+    let signed = |mask: usize, k: usize, value: f64| if mask >> k & 1 == 1 { -value } else { value };
+    let values = |(order, mask): (&[usize; CONSTANTS], usize)| -> Vec<u32> {
         let of_probe = |probe: &[f64; CONSTANTS]| -> Vec<f64> {
-            let constants = order.map(|k| probe[k]);
+            let constants: [f64; CONSTANTS] = std::array::from_fn(|k| signed(mask, k, probe[order[k]]));
             let values: Vec<f64> = POINTS.iter().map(|x| program.value(*x, &constants)).collect();
             let scale = if is_root { values[2] } else { 1.0 };
             values.into_iter().map(|value| value / scale).collect()
@@ -150,7 +153,10 @@ fn key(tree: &Tree, is_root: bool) -> Option<Vec<u32>> {
         let values = PROBES.iter().flat_map(of_probe);
         values.map(bits).collect()
     };
-    let key = orders.iter().map(values).min()?;
+    let variants = orders
+        .iter()
+        .flat_map(|order| (0..masks).map(move |mask| (order, mask)));
+    let key = variants.map(values).min()?;
     let is_defined = key.iter().any(|bits| *bits != UNDEFINED);
     let is_leaf = tree.size == 1;
     let varies = key.iter().any(|bits| *bits != key[0]) || tree.op == Op::Threshold;

@@ -26,7 +26,7 @@ fn families_are_listed_once() {
     ] {
         assert!(texts.contains(listed), "{listed}");
     }
-    // A constant factor is the strength, log(c x^c) = c + c log x, and exp(c + x) has a factor.
+    // A constant factor is the strength, log(c x^c) = c + c log x, exp(c + x) has a factor, and constants have either sign.
     for redundant in [
         "c * x",
         "log((x)^c)",
@@ -35,6 +35,7 @@ fn families_are_listed_once() {
         "(c * x)^c",
         "exp(if(x > c, 1, 0))",
         "(1 + if(x > c, 1, 0))",
+        "x / ((c - x))",
     ] {
         assert!(!texts.contains(redundant), "{redundant}");
     }
