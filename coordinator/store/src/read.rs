@@ -318,11 +318,7 @@ impl Reader {
             .bind(calibration)
             .fetch_optional(&self.pool)
             .await?;
-        let read = |json: String| {
-            serde_json::from_str(&json)
-                .map_err(|e| StoreError::Corrupt(format!("record of search {calibration}: {e}")))
-        };
-        record.map(read).transpose()
+        record.map(|json| discovery_of(calibration, &json)).transpose()
     }
 
     /// Reads the records of all searches whose texts contain a name, by search.
@@ -331,10 +327,7 @@ impl Reader {
             "SELECT calibration, record FROM discoveries WHERE record LIKE '%' || ? || '%' ORDER BY calibration",
         );
         let rows: Vec<(i64, String)> = rows.bind(format!("\"{name}\"")).fetch_all(&self.pool).await?;
-        let read = |(search, json): (i64, String)| {
-            let corrupt = |e| StoreError::Corrupt(format!("record of search {search}: {e}"));
-            Ok((search, serde_json::from_str(&json).map_err(corrupt)?))
-        };
+        let read = |(search, json): (i64, String)| Ok((search, discovery_of(search, &json)?));
         rows.into_iter().map(read).collect()
     }
 
@@ -500,6 +493,11 @@ fn job_text(toml: String, state: CalibrationState) -> String {
         true => without_metamodel(JOB, &toml).unwrap_or(toml),
         false => toml,
     }
+}
+
+/// Reads the record of a search.
+fn discovery_of(search: i64, json: &str) -> Result<Discovery, StoreError> {
+    serde_json::from_str(json).map_err(|e| StoreError::Corrupt(format!("record of search {search}: {e}")))
 }
 
 fn columns(id: i64, row: &Row, filled: Filled) -> Result<CalibrationRow, StoreError> {
