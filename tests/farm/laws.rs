@@ -62,3 +62,19 @@ fn a_model_with_a_law_is_searched_again_to_a_verdict() {
         assert_ne!(found, format!("{}.toml", given[0]));
     }
 }
+
+#[test]
+fn a_law_is_no_more_probable_for_forms_that_were_only_screened() {
+    // The screen promised a form of a law of the sinkage thousands of nats more than its fit kept: the choice among laws was then a gain
+    // in place of a cost, and the law with one of the effects had all the probability.
+    let (_, summary) = study(&Job::data("two-effects"));
+    let round = &summary["discovery"]["rounds"][0];
+    for set in items(&round["sets"]) {
+        assert!(float(&set["prior"]) <= 0.5, "{set}");
+    }
+    let best = items(&round["sets"]).next().expect("a set");
+    assert_eq!(
+        best["members"],
+        serde_json::json!(["janosi_hanamoto", "bulldozing"])
+    );
+}

@@ -252,14 +252,15 @@ impl FittedLaw {
     pub(super) fn describe(&mut self, indices: Range<usize>, branch: &SearchBranch) {
         let forms = branch.ranked().into_iter();
         let forms: Vec<_> = forms.filter(|(k, _)| indices.contains(k)).collect();
-        let factors = forms.iter().map(|(_, form)| form.log_bayes_factor);
-        let all = factors.chain([self.log_bayes_factor]);
-        self.mean_log_bayes_factor = log_sum_exp(all) - libm::log(1.0 + indices.len() as f64);
         let fitted = forms.iter().filter_map(|(k, form)| {
             let fit = branch.search.fit_of(form.candidate?)?;
             Some((*k, form.log_bayes_factor, fit))
         });
         let fitted: Vec<_> = fitted.collect();
+        // A form that was screened alone counts as without evidence: the screen may promise far more than a fit keeps.
+        let factors = fitted.iter().map(|(_, factor, _)| *factor);
+        let all = factors.chain([self.log_bayes_factor]);
+        self.mean_log_bayes_factor = log_sum_exp(all) - libm::log(1.0 + indices.len() as f64);
         self.forms.extend(fitted.iter().map(|(candidate, factor, fit)| {
             FittedForm::new(*candidate, *factor, fit, branch.added_parameters(fit))
         }));
