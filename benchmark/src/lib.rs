@@ -3,6 +3,7 @@
 //! # Layout
 //! - [`damaged_input`]: every reader of files and messages, fed damaged inputs.
 //! - [`hidden_effect`]: how often the missing effect is found.
+//! - [`challenge`]: challenges that others stated, of systems without wheels.
 //! - [`sbc`]: simulation-based calibration of the whole chain.
 //! - [`posterior_use`]: predictions of unseen conditions, decisions over synthetic campaigns, and recordings.
 //! - [`farm_load`]: jobs and messages for a farm whose model costs nothing.
@@ -15,6 +16,7 @@
 )]
 
 pub mod calibration;
+pub mod challenge;
 pub mod damaged_input;
 pub mod error;
 pub mod farm_load;

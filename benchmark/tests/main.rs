@@ -1,5 +1,6 @@
 //! A small part of each study.
 
+mod challenge;
 mod decision;
 mod fuzz;
 mod hidden_effect;

@@ -1,0 +1,144 @@
+//! Challenges that others stated: missing laws of systems that have nothing to do with wheels.
+//!
+//! `cargo bench -p benchmark --bench challenge -- bioreactor [SEEDS [FIRST]] [--transcript]`
+//! `cargo bench -p benchmark --bench challenge -- corrections [SEEDS [FIRST]]`
+
+use std::process::ExitCode;
+use std::time::Instant;
+
+use benchmark::challenge::bioreactor::{self, Campaign};
+use benchmark::challenge::correction::{SCENARIOS, searched};
+use benchmark::error::StudyError;
+use benchmark::parallel::each;
+use equation::FormulaLibrary;
+
+/// The largest number of nodes of a formula of a correction: two laws have eight.
+const NODES: usize = 8;
+/// Noise over the value.
+const NOISES: [f64; 4] = [0.0, 0.01, 0.05, 0.1];
+
+fn main() -> ExitCode {
+    let all: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&String> = all.iter().filter(|a| !a.starts_with("--")).collect();
+    let numbers: Result<Vec<u64>, _> = words.iter().skip(1).map(|word| word.parse()).collect();
+    let Ok(numbers) = numbers else {
+        eprintln!("error: SEEDS and FIRST are whole numbers");
+        return ExitCode::FAILURE;
+    };
+    let seeds = |default: u64| numbers.first().copied().unwrap_or(default).max(1);
+    let first = numbers.get(1).copied().unwrap_or(1);
+    let result = match words.first().map(|word| word.as_str()) {
+        Some("bioreactor") => bioreactors(seeds(50), first, all.iter().any(|a| a == "--transcript")),
+        Some("corrections") => corrections(seeds(10), first),
+        _ => Err("the first argument is bioreactor or corrections".into()),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("error: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn transcript(seed: u64, campaign: &Campaign) {
+    for (number, (feed, finding)) in campaign.steps.iter().enumerate() {
+        let feed: Vec<String> = feed.iter().map(|q| format!("{q:.1}")).collect();
+        println!(
+            "seed {seed}, experiment {}: feed {} L/h",
+            number + 1,
+            feed.join(" ")
+        );
+        let knots = finding.law.knots.iter().zip(&finding.law.values);
+        let knots: Vec<String> = knots
+            .map(|(x, y)| format!("{y:.3} ± {:.3} at {x:.2} g/L", finding.law.curve.sd(*x)))
+            .collect();
+        println!("  growth rate [1/h]: {}", knots.join(", "));
+        for (class, probability) in finding.classes.iter().enumerate().take(4) {
+            if let Some(best) = finding.formulas.iter().find(|f| f.class == class) {
+                let mark = if finding.is_true[class] { " (Monod)" } else { "" };
+                println!(
+                    "  P {probability:.3}{mark}: {}; yield {:.3}, maintenance {:.3} 1/h",
+                    best.text,
+                    libm::exp(best.parameters()[0]),
+                    best.parameters()[1]
+                );
+            }
+        }
+    }
+}
+
+fn bioreactors(seeds: u64, first: u64, is_shown: bool) -> Result<(), StudyError> {
+    let library = FormulaLibrary::new(7, false);
+    let begin = Instant::now();
+    let campaigns = each(seeds, |k| {
+        Ok::<_, StudyError>(bioreactor::campaign(first + k, &library))
+    })?;
+    let mut after = [0_usize; bioreactor::DESIGNED + 1];
+    let (mut wrong, mut undecided) = (0, 0);
+    for (k, campaign) in campaigns.iter().enumerate() {
+        let campaign = campaign.as_ref().ok_or("a curve has no fit")?;
+        if is_shown {
+            transcript(first + k as u64, campaign);
+        }
+        match campaign.named() {
+            Some((designed, true)) => after[designed] += 1,
+            Some((_, false)) => wrong += 1,
+            None => undecided += 1,
+        }
+    }
+    println!(
+        "Monod's class has P >= {} in {} of {seeds} (after 1, 2, 3 designed experiments: {:?}), another in {wrong}, none in {undecided}; {:.0} s",
+        bioreactor::NAMED,
+        after.iter().sum::<usize>(),
+        &after[1..],
+        begin.elapsed().as_secs_f64()
+    );
+    let claims = each(seeds, |k| {
+        bioreactor::claim_beyond_the_truth(first + k).ok_or("a growth rate has no fit")
+    })?;
+    let claimed = claims
+        .iter()
+        .filter(|log_bayes_factor| bioreactor::is_claimed(**log_bayes_factor))
+        .count();
+    println!("with the growth rate given: a further law is claimed in {claimed} of {seeds}");
+    Ok(())
+}
+
+fn corrections(seeds: u64, first: u64) -> Result<(), StudyError> {
+    let library = FormulaLibrary::new(NODES, false);
+    println!(
+        "| noise | correction | in the class | simplest member | P > .9 | members, median | the simplest, seed {first} |\n|---|---|---|---|---|---|---|"
+    );
+    for noise in NOISES {
+        let (mut in_class, mut simplest) = (0, 0);
+        for (number, scenario) in SCENARIOS.iter().enumerate() {
+            let said = each(seeds, |k| {
+                searched(scenario, &library, noise, first + k, number as u64).ok_or("no curve")
+            })?;
+            let count = |test: &dyn Fn(&benchmark::challenge::correction::Said) -> bool| {
+                said.iter().filter(|s| test(s)).count()
+            };
+            let mut members: Vec<usize> = said.iter().map(|s| s.members).collect();
+            members.sort_unstable();
+            in_class += count(&|s| s.is_in_class);
+            simplest += count(&|s| s.is_simplest);
+            println!(
+                "| {:.0} % | {} | {} | {} | {} | {} | {} |",
+                100.0 * noise,
+                scenario.name,
+                count(&|s| s.is_in_class),
+                count(&|s| s.is_simplest),
+                count(&|s| s.probability > 0.9),
+                members[members.len() / 2],
+                said[0].simplest
+            );
+        }
+        let all = seeds as usize * SCENARIOS.len();
+        println!(
+            "| {:.0} % | **all** | {in_class}/{all} | {simplest}/{all} | | | |",
+            100.0 * noise
+        );
+    }
+    Ok(())
+}
