@@ -6,7 +6,7 @@
 
 A method is given the points, the noisy values and their standard deviation, and returns the formula that it prefers, then the others that
 it offers, each as text over x. A formula is the truth if, its constants fitted again, it gives the curve without noise to 1e-4 of its root
-mean square, with as many constants as the truth has; `+1` allows one more. A run has a minute. Runs are appended to the results and not repeated.
+mean square, with as many constants as the truth has; `+1` allows one more. A run has a minute of CPU time. Runs are appended to the results and not repeated.
 To enter, add a function to METHODS. Packages: formula-requirements.txt.
 """
 import argparse
@@ -33,7 +33,7 @@ logging.disable(logging.INFO)
 def pyoperon(x, y, sd):
     from pyoperon.sklearn import SymbolicRegressor
     symbols = "add,sub,mul,div,pow,exp,log,tanh,sqrt,square,constant,variable"
-    model = SymbolicRegressor(allowed_symbols=symbols, objectives=["r2", "length"], max_length=15, max_time=10, max_evaluations=10**8,
+    model = SymbolicRegressor(allowed_symbols=symbols, objectives=["r2", "length"], max_length=15, max_time=LIMIT_S, max_evaluations=10**8,
                               uncertainty=[sd], random_state=1)
     model.fit(x[:, None], y)
     text = lambda tree: model.get_model_string(tree, precision=12).replace("X1", "x").replace("^", "**")
@@ -116,13 +116,13 @@ def end_run(*_):
 
 
 def run(case, name):
-    signal.setitimer(signal.ITIMER_REAL, LIMIT_S)
+    signal.setitimer(signal.ITIMER_PROF, LIMIT_S)
     began = time.process_time()
     try:
         formulas = METHODS[name](np.array(case["points"]), np.array(case["values"]), case["sd"])
     except (TimeUp, Exception) as error:  # a method may fail in any way
         formulas = [f"failed: {type(error).__name__}"]
-    signal.setitimer(signal.ITIMER_REAL, 0)
+    signal.setitimer(signal.ITIMER_PROF, 0)
     seconds = time.process_time() - began
     return {"formulas": formulas, "seconds": seconds, **judge(case, formulas)}
 
@@ -149,7 +149,7 @@ def main():
     arguments.add_argument("--laws", type=int, default=200, help="laws of each noise for the other methods")
     arguments.add_argument("--results", type=pathlib.Path, default=pathlib.Path("formula-results.jsonl"))
     chosen = arguments.parse_args()
-    signal.signal(signal.SIGALRM, end_run)
+    signal.signal(signal.SIGPROF, end_run)
     cases = [json.loads(line) for line in chosen.cases.read_text().splitlines()]
     read = chosen.results.read_text().splitlines() if chosen.results.exists() else []
     results = [json.loads(line) for line in read]
