@@ -134,7 +134,7 @@ pub const SCENARIOS: [Scenario; 9] = [
     },
 ];
 
-/// What is said of a scenario.
+/// The answer of the search to a scenario, judged by the hidden correction.
 pub struct Said {
     /// Probability of the leading class.
     pub probability: f64,
