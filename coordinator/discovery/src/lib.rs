@@ -36,6 +36,7 @@ pub use probability::DETECTED;
 pub use settings::{SearchSettings, Smoothness, Starts};
 pub use stages::ask_tell::DiscoverySearch;
 pub use stages::conclusion::{Conclusion, OutsideLaw, PosteriorModel};
+pub use stages::formula_fit::{FormulaFit, FormulaRequest};
 pub use stages::law_curve::LawCurve;
 pub use stages::law_forms::WeighedForm;
 pub use stages::leaders::Leader;

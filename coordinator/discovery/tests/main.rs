@@ -5,6 +5,7 @@
 mod description;
 mod effect_search;
 mod exchange;
+mod formulas;
 mod inferred_noise;
 mod inferred_sd_reduction;
 mod pairs;

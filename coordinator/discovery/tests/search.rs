@@ -38,7 +38,7 @@ pub(crate) const LIBRARY: usize = 4;
 /// Laws outside it: a curve over x with a step, a curve over w with a line.
 const OVER_X: usize = LIBRARY;
 const STEP: usize = LIBRARY + 1;
-const OVER_W: usize = LIBRARY + 2;
+pub(crate) const OVER_W: usize = LIBRARY + 2;
 
 fn library() -> Vec<Candidate> {
     let names = ["square", "cube", "width", "constant"];
@@ -84,7 +84,7 @@ pub(crate) fn added(k: usize, parameters: &[f64], x: f64, w: f64) -> f64 {
     }
 }
 
-fn length(k: usize) -> usize {
+pub(crate) fn length(k: usize) -> usize {
     match k {
         OVER_X | OVER_W => 5,
         STEP => 2,

@@ -79,6 +79,9 @@ pub(crate) fn conclude(
         if let Some(conclusion) = search.conclusion() {
             return conclusion.clone();
         }
+        if search.wanted_formulas().is_some() {
+            search.offer_formulas(Vec::new()).unwrap();
+        }
         for index in order(search.pending().len(), backwards) {
             let values = answer(search.query(index).unwrap());
             let progress = search.tell(index, values.as_deref()).unwrap();

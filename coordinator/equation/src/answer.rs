@@ -60,6 +60,40 @@ pub struct FormulaClass {
     pub members: Vec<usize>,
 }
 
+impl WeighedFit {
+    /// Returns the formula, of which the probability is not known before [`answer`].
+    #[must_use]
+    pub fn formula(&self) -> &FittedFormula {
+        &self.formula
+    }
+
+    /// Returns the formula as data behind the curve have it; `None` where it then has a pole in the range.
+    ///
+    /// # Arguments
+    /// - `parameters`: their values in the order of [`FormulaText::parameters`](crate::FormulaText). `log_evidence`: stands in the place
+    ///   of the evidence of the curve, for all formulas alike.
+    #[must_use]
+    pub fn refitted(&self, curve: &LocatedCurve, parameters: &[f64], log_evidence: f64) -> Option<Self> {
+        let place = self.formula.place_of(curve, parameters);
+        let problem = self.formula.problem(curve);
+        if !problem.is_regular(&place) {
+            return None;
+        }
+        Some(Self {
+            weight: self.weight - self.formula.log_evidence + log_evidence,
+            formula: FittedFormula {
+                log_evidence,
+                values: problem.on_grid(&place),
+                fit: Fit {
+                    place,
+                    ..self.formula.fit.clone()
+                },
+                ..self.formula.clone()
+            },
+        })
+    }
+}
+
 impl Answer {
     /// Returns the member of a class with the fewest nodes and constants.
     #[must_use]
@@ -133,10 +167,30 @@ pub fn fits(curve: &LocatedCurve, library: &FormulaLibrary, formula: usize) -> V
     .collect()
 }
 
-/// Weighs formulas against each other, and groups them.
-pub fn answer(curve: &LocatedCurve, fits: impl IntoIterator<Item = WeighedFit>) -> Answer {
+/// Returns fits by falling probability.
+#[must_use]
+pub fn ranked(fits: impl IntoIterator<Item = WeighedFit>) -> Vec<WeighedFit> {
     let mut ranked: Vec<WeighedFit> = fits.into_iter().collect();
     ranked.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+    ranked
+}
+
+/// Returns the probability of each of some fits among all of them.
+///
+/// # Arguments
+/// - `ranked`: as [`ranked`] returns them.
+#[must_use]
+pub fn probabilities(ranked: &[WeighedFit]) -> Vec<f64> {
+    let best = ranked.first().map_or(0.0, |fit| fit.weight);
+    let relative = ranked.iter().map(|fit| libm::exp(fit.weight - best));
+    let relative: Vec<f64> = relative.collect();
+    let sum: f64 = relative.iter().sum();
+    relative.into_iter().map(|weight| weight / sum).collect()
+}
+
+/// Weighs formulas against each other, and groups them.
+pub fn answer(curve: &LocatedCurve, fits: impl IntoIterator<Item = WeighedFit>) -> Answer {
+    let mut ranked = ranked(fits);
     ranked.truncate(GROUPED);
     let best = ranked.first().map_or(0.0, |fit| fit.weight);
     let formulas = ranked.into_iter().map(|fit| FittedFormula {
@@ -156,12 +210,7 @@ pub fn fitted(curve: &LocatedCurve, tree: &Arc<Tree>, link: Link) -> Option<Fitt
         link,
     };
     let fit = problem.fit()?;
-    let size = problem.size(&fit.place);
-    let values = curve
-        .grid
-        .iter()
-        .map(|x| problem.law(&fit.place, size, *x))
-        .collect();
+    let values = problem.on_grid(&fit.place);
     Some(FittedFormula {
         tree: tree.clone(),
         link,

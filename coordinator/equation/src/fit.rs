@@ -319,7 +319,7 @@ impl Problem<'_> {
     }
 
     /// Returns whether the law is defined over the whole range: no divisor changes its sign, and a factor stays positive.
-    fn is_regular(&self, place: &[f64; PARAMETERS]) -> bool {
+    pub(crate) fn is_regular(&self, place: &[f64; PARAMETERS]) -> bool {
         let constants = self.constants(place);
         let Some((_, size)) = self.shape(&constants) else {
             return false;
@@ -341,6 +341,21 @@ impl Problem<'_> {
     /// Returns the law at a point of the variable over its scale; for a factor its logarithm. NaN where it is undefined.
     pub(crate) fn law(&self, place: &[f64; PARAMETERS], size: f64, x: f64) -> f64 {
         self.linked(place[0] * self.program.value(x, &self.constants(place)) / size)
+    }
+
+    /// Returns the law at the points at which formulas are compared.
+    pub(crate) fn on_grid(&self, place: &[f64; PARAMETERS]) -> Vec<f64> {
+        let size = self.size(place);
+        let grid = self.curve.grid.iter();
+        grid.map(|x| self.law(place, size, *x)).collect()
+    }
+
+    /// Returns the coordinate of a constant.
+    pub(crate) fn coordinate(&self, constant: usize, value: f64) -> f64 {
+        match self.program.roles[constant] {
+            ConstantRole::Coefficient => libm::asinh(value),
+            ConstantRole::Exponent | ConstantRole::Threshold => value,
+        }
     }
 
     /// Returns the root mean square of the formula over the points of the curve.

@@ -21,7 +21,9 @@ mod text;
 mod tree;
 mod unit;
 
-pub use answer::{Answer, FittedFormula, FormulaClass, WeighedFit, answer, fits, fitted, search};
+pub use answer::{
+    Answer, FittedFormula, FormulaClass, WeighedFit, answer, fits, fitted, probabilities, ranked, search,
+};
 pub use curve::{CurveError, Host, LocatedCurve};
 pub use enumeration::FormulaLibrary;
 pub use fit::Link;

@@ -1,10 +1,10 @@
 //! Formulas as text.
 
-use equation::{FormulaText, Host, ParameterKind};
+use equation::{FormulaText, Host, ParameterKind, fits, ranked};
 use formula::expression::Expression;
 use formula::unit::Unit;
 
-use crate::setup::{answer, curve};
+use crate::setup::{LIBRARY, answer, curve};
 
 #[test]
 fn a_formula_gives_the_law_that_was_fitted() {
@@ -33,6 +33,33 @@ fn a_formula_gives_the_law_that_was_fitted() {
                 assert!(
                     (found - expected).abs() < 1e-9,
                     "{} at {at}: {found}, {expected}",
+                    text.formula
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn parameters_determine_a_formula() {
+    for host in [Host::Addition, Host::Factor] {
+        let curve = curve(host, 0.05, |x| 0.8 * x / (x + 0.3));
+        let count = LIBRARY.formulas().count();
+        let fits = (0..count).flat_map(|formula| fits(&curve, &LIBRARY, formula));
+        for fit in &ranked(fits)[..200] {
+            let text = FormulaText::new(&curve, fit.formula(), "q", "x");
+            // Another strength and other constants than the fitted ones, near them.
+            let parameters = text.parameters.iter().map(|parameter| 1.02 * parameter.value);
+            let parameters: Vec<f64> = parameters.collect();
+            let Some(refitted) = fit.refitted(&curve, &parameters, -1.0) else {
+                continue;
+            };
+            let written = FormulaText::new(&curve, refitted.formula(), "q", "x");
+            assert_eq!(written.formula, text.formula);
+            for (parameter, expected) in written.parameters.iter().zip(parameters) {
+                assert!(
+                    (parameter.value - expected).abs() < 1e-9 * expected.abs(),
+                    "{}: {parameter:?} {expected}",
                     text.formula
                 );
             }

@@ -8,15 +8,19 @@ const NAMED: f64 = 0.1;
 /// Maximum number of classes in a sentence.
 const MAX_NAMED: usize = 3;
 
-/// The formulas of a law, from its curve with the covariance of the knots.
+/// The formulas of a law, weighed by its curve with the covariance of the knots; the leading ones by the measurements, through the model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct LawFormulas {
     /// The leading classes by falling probability, which have 0.95 together, or the first five.
     pub classes: Vec<FormulaClass>,
     /// Probability of all other classes.
     pub others: f64,
-    /// Number of formulas that were fitted.
+    /// Number of formulas that were fitted to the curve.
     pub fitted: u64,
+    /// Number of the formulas, the most probable by the curve, that were fitted to the measurements through the model, and are weighed by
+    /// that; 0 of a model that is too expensive for it.
+    #[serde(default)]
+    pub through_model: u64,
     /// Where the first two classes differ most; null with one class, and where no condition tells them apart by two standard deviations.
     pub splitting: Option<SplittingCondition>,
 }

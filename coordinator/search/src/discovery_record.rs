@@ -9,7 +9,7 @@ use discovery::{
 use job::PlainParameter;
 use record::{
     ChiSquare, Discovery, Extension, FittedForm, ImplausibleParameter, JudgedEffect, JudgedReplacement,
-    JudgedSet, NONE, NOT_IN_LIBRARY, NextRun, Outside, RunInformation, Verdict,
+    JudgedSet, LawFormulas, NONE, NOT_IN_LIBRARY, NextRun, Outside, RunInformation, Verdict,
 };
 use shared::channel::Channel;
 
@@ -18,7 +18,6 @@ use super::candidate::CandidateEffect;
 use super::curves::curves;
 use super::entry::{CandidateEntry, LawEntry};
 use super::law::curve;
-use super::law::equation::formulas;
 use super::law::file::free_name;
 use super::law::formula::formula;
 use super::models::SearchModels;
@@ -307,6 +306,14 @@ fn fitted_form(models: &SearchModels, law: &LawEntry, form: &WeighedForm) -> Opt
     })
 }
 
+/// Returns the formulas of a law: those that were fitted through the model, otherwise those of its curve.
+fn formulas(models: &SearchModels, outside: &OutsideLaw, law: &LawEntry) -> Option<LawFormulas> {
+    match &models.equation {
+        Some(equation) => equation.record(&outside.formulas),
+        None => models.equation_of(law, outside.curve.as_ref()?)?.record(&[]),
+    }
+}
+
 /// Returns the law with its curve, and its file as an extension.
 fn outside(models: &SearchModels, outside: &OutsideLaw) -> Option<(Outside, Extension)> {
     let law = models.laws.get(outside.law)?;
@@ -324,10 +331,7 @@ fn outside(models: &SearchModels, outside: &OutsideLaw) -> Option<(Outside, Exte
         curve: curve::curve(text, &best, &law.dependence).unwrap_or_default(),
         effect_file: effect_file.clone(),
         left_out_nats: outside.left_out_nats,
-        formulas: outside
-            .curve
-            .as_ref()
-            .and_then(|curve| formulas(&law.dependence, curve)),
+        formulas: formulas(models, outside, law),
         forms: outside
             .forms
             .iter()

@@ -1,17 +1,23 @@
 //! The entries of a search: each candidate of the discovery with its addition to the job.
 
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 
 use discovery::Candidate;
 use formula::{Effect, Hook};
-use job::{EffectOnNodes, FreeParameter, Job, ModelSwitch, NamedFiles, PlainParameter, Spec};
+use job::{
+    EffectOnNodes, FreeParameter, Job, ModelSwitch, NamedFiles, PlainParameter, Spec, free_parameters,
+};
 use record::{Extension, NotTried};
 
+use shared::file::FileError;
 use shared::model::ModelKind;
 use shared::parameters::{SPATIAL, model_parameters};
 
-use super::candidate::{CandidateEffect, candidate_of, spec, with_extensions};
-use super::law::dependence::Dependence;
+use super::candidate::{CandidateEffect, JOB, candidate_of, spec, with_extensions};
+use super::candidate_file::effects_in_files;
+use super::law::dependence::{Dependence, dependences};
+use super::law::file::LawFiles;
 use super::law::form::LawForm;
 
 impl CandidateEffect {
@@ -47,6 +53,41 @@ pub(super) struct LawEntry {
 }
 
 impl LawEntry {
+    /// Lists the laws outside the library that the experiment can show, as candidates.
+    ///
+    /// # Errors
+    /// [`FileError`] if the file of a law cannot be read.
+    pub(super) fn all_of(job: &Job, base: &Spec) -> Result<Vec<Self>, FileError> {
+        let fail = |message: String| FileError::whole(JOB, message);
+        let entry = |law: CandidateEffect| -> Result<CandidateEntry, FileError> {
+            let name = law.name.clone();
+            let Extension::File { text, .. } = &law.extension else {
+                return Err(fail(format!("{name} is not an effect file")));
+            };
+            let effect = Effect::read(text).map_err(|e| fail(format!("{name}: {e}")))?;
+            let free = free_parameters(&effect).map_err(|e| fail(e.to_string()))?;
+            let entry = CandidateEntry::new(law, &effect, free, true);
+            entry.ok_or_else(|| fail(format!("{name} has no strength")))
+        };
+        // A law that is a candidate already is not offered a second time.
+        let taken = names_taken(job, base);
+        let mut laws = Vec::new();
+        let is_shown = |dependence: &Dependence| dependence.is_shown_by(base.model.external.as_ref());
+        for dependence in dependences(&base.experiment).into_iter().filter(is_shown) {
+            let files = LawFiles::addable(&dependence, &job.files, &taken);
+            let Some(LawFiles { curve, forms }) = files else {
+                continue;
+            };
+            let forms = forms.into_iter().map(|(form, file)| Ok((form, entry(file)?)));
+            laws.push(LawEntry {
+                curve: entry(curve)?,
+                forms: forms.collect::<Result<_, FileError>>()?,
+                dependence,
+            });
+        }
+        Ok(laws)
+    }
+
     /// Returns its candidates: the curve, then the forms.
     pub(super) fn entries(&self) -> impl Iterator<Item = &CandidateEntry> {
         std::iter::once(&self.curve).chain(self.forms.iter().map(|(_, entry)| entry))
@@ -176,6 +217,13 @@ impl CandidateEntry {
             effect: candidate,
         })
     }
+}
+
+/// Returns the names of the effects of a job and of its candidate files.
+pub(super) fn names_taken(job: &Job, base: &Spec) -> BTreeSet<String> {
+    let of_model = base.fit_variant.effects.iter().map(|effect| effect.name.clone());
+    let of_files = effects_in_files(job).map(|effect| effect.name);
+    of_model.chain(of_files).collect()
 }
 
 /// Returns the quantity that a formula changes. The sinkage exponent shapes the pressure, and the strength limits the shear stress.

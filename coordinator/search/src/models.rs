@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use discovery::{
-    LawCandidate, ProposedRuns, QueriedModel, Query, SearchSettings, SearchTask, Smoothness, Starts,
+    Candidate, FormulaRequest, LawCandidate, LawCurve, ProposedRuns, QueriedModel, Query, SearchSettings,
+    SearchTask, Smoothness, Starts,
 };
 use formula::catalogue::{catalogue, find};
 use formula::slip::variables;
@@ -16,21 +17,17 @@ use shared::file::{FileError, FileSet};
 use shared::model::{EffectSet, ExternalModel, ModelKind, ModelVariant, RunCondition};
 use shared::outcome::Observables;
 
-use super::candidate::{
-    CandidateEffect, EXPERIMENT, ExclusionReason, JOB, LibraryEffect, library, spec, with_extensions,
-};
+use super::candidate::{EXPERIMENT, ExclusionReason, JOB, LibraryEffect, library, spec, with_extensions};
 use super::candidate_file::{candidates_in_files, effects_in_files, unfit_files};
 use super::design;
-use super::entry::{CandidateEntry, LawEntry};
+use super::entry::{CandidateEntry, LawEntry, names_taken};
 use super::family::set_families;
-use super::law::dependence::{Dependence, dependences};
-use super::law::file::LawFiles;
+use super::law::equation::LawEquation;
 use super::reduced_model::ReducedModel;
 use super::rig_errors::suspects;
 use super::untried::{UntriedEffect, untried};
 use job::{
     EffectOnNodes, Job, MODEL_SWITCHES, NamedFile, NamedFiles, PLAIN_PARAMETERS, PlainParameter, Spec,
-    free_parameters,
 };
 use record::{Extension, NotTried};
 
@@ -69,7 +66,9 @@ pub struct SearchModels {
     /// model does not show, and effects that act in no condition of the fitted runs.
     not_tried: Vec<NotTried>,
     pub(super) laws: Vec<LawEntry>,
-    /// The files of the laws, each read once.
+    /// The formulas of the law that is claimed; `None` before they are wanted.
+    pub(super) equation: Option<LawEquation>,
+    /// The files of the laws and formulas, each read once.
     law_files: NamedFiles,
     /// The base without each of its effects.
     pub(super) reductions: Vec<ReducedModel>,
@@ -113,7 +112,7 @@ impl SearchModels {
         let room = EffectSet::MAX_EFFECTS.saturating_sub(base.fit_variant.effects.len());
         let laws = match room {
             0 | 1 => Vec::new(),
-            _ => laws(&job, &base)?,
+            _ => LawEntry::all_of(&job, &base)?,
         };
         let prior_means: Vec<f64> = base.parameters.iter().map(|p| p.marginal.quantile(0.5)).collect();
         Ok(Self {
@@ -124,8 +123,9 @@ impl SearchModels {
             assumed,
             library,
             not_tried,
-            law_files: law_files(&laws),
+            law_files: law_files(laws.iter().flat_map(LawEntry::entries)),
             laws,
+            equation: None,
             variants: BTreeMap::new(),
             keys: BTreeMap::new(),
             max_effects: max_effects.min(room.saturating_sub(1)),
@@ -211,10 +211,32 @@ impl SearchModels {
             .collect()
     }
 
-    /// Returns the candidate of an index: the library, then the curve and the forms of each law.
+    /// Returns the candidate of an index: the library, then the curve and the forms of each law, then the formulas of one law.
     pub(super) fn entry(&self, index: usize) -> Option<&CandidateEntry> {
         let of_laws = self.laws.iter().flat_map(LawEntry::entries);
-        self.library.iter().chain(of_laws).nth(index)
+        let formulas = self.equation.iter().flat_map(LawEquation::entries);
+        self.library.iter().chain(of_laws).chain(formulas).nth(index)
+    }
+
+    /// Makes the formulas of a law that a search wants, the most probable by the law's curve; none where the curve determines none.
+    pub fn offer(&mut self, request: &FormulaRequest) -> Vec<Candidate> {
+        let law = &self.laws[request.law];
+        let mut equation = self.equation_of(law, &request.curve);
+        let offered = equation.as_mut().map_or(Vec::new(), LawEquation::offer);
+        self.law_files = law_files(
+            self.laws
+                .iter()
+                .flat_map(LawEntry::entries)
+                .chain(equation.iter().flat_map(LawEquation::entries)),
+        );
+        self.equation = equation;
+        offered
+    }
+
+    /// Returns the formulas of the curve of a law; `None` where it determines nothing.
+    pub(super) fn equation_of(&self, law: &LawEntry, curve: &LawCurve) -> Option<LawEquation> {
+        let taken = names_taken(&self.job, &self.base);
+        LawEquation::new(&law.dependence, curve, |name| taken.contains(name))
     }
 
     /// Returns the name of a candidate; empty without one.
@@ -368,50 +390,15 @@ fn library_entries(
     entries
 }
 
-/// Parses the files of laws.
-fn law_files(laws: &[LawEntry]) -> NamedFiles {
+/// Parses the files of laws, or of their formulas.
+fn law_files<'e>(entries: impl Iterator<Item = &'e CandidateEntry>) -> NamedFiles {
     let mut files = NamedFiles::default();
-    for entry in laws.iter().flat_map(LawEntry::entries) {
+    for entry in entries {
         if let Extension::File { name, text } = &entry.effect.extension {
             files.insert(name, NamedFile::new(text.clone()));
         }
     }
     files
-}
-
-/// Lists the laws outside the library that the experiment can show, as candidates.
-fn laws(job: &Job, base: &Spec) -> Result<Vec<LawEntry>, FileError> {
-    let fail = |message: String| FileError::whole(JOB, message);
-    let entry = |law: CandidateEffect| -> Result<CandidateEntry, FileError> {
-        let name = law.name.clone();
-        let Extension::File { text, .. } = &law.extension else {
-            return Err(fail(format!("{name} is not an effect file")));
-        };
-        let effect = Effect::read(text).map_err(|e| fail(format!("{name}: {e}")))?;
-        let free = free_parameters(&effect).map_err(|e| fail(e.to_string()))?;
-        let entry = CandidateEntry::new(law, &effect, free, true);
-        entry.ok_or_else(|| fail(format!("{name} has no strength")))
-    };
-    // A law that is a candidate already is not offered a second time.
-    let of_model = base.fit_variant.effects.iter().map(|effect| effect.name.clone());
-    let taken = of_model
-        .chain(effects_in_files(job).map(|effect| effect.name))
-        .collect();
-    let mut laws = Vec::new();
-    let is_shown = |dependence: &Dependence| dependence.is_shown_by(base.model.external.as_ref());
-    for dependence in dependences(&base.experiment).into_iter().filter(is_shown) {
-        let files = LawFiles::addable(&dependence, &job.files, &taken);
-        let Some(LawFiles { curve, forms }) = files else {
-            continue;
-        };
-        let forms = forms.into_iter().map(|(form, file)| Ok((form, entry(file)?)));
-        laws.push(LawEntry {
-            curve: entry(curve)?,
-            forms: forms.collect::<Result<_, FileError>>()?,
-            dependence,
-        });
-    }
-    Ok(laws)
 }
 
 /// Excludes combinations of an effect whose shear displacement is kept on the nodes with other effects of the displacement, which

@@ -69,6 +69,12 @@ impl RunningDiscovery {
     /// Begins rounds until one has a query without a known answer, or the search ends.
     fn begin_round(&mut self) -> Result<TellProgress, DiscoveryError> {
         loop {
+            if let Some(request) = self.search.wanted_formulas().cloned() {
+                let progress = self.search.offer_formulas(self.models.offer(&request))?;
+                if !matches!(progress, TellProgress::NextRound) {
+                    return Ok(self.ended(progress));
+                }
+            }
             self.prepare()?;
             let known = self.sort_queries();
             self.spared += known.len();

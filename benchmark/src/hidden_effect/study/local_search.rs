@@ -88,6 +88,9 @@ impl LocalSearch {
             if let Some(failure) = search.failure() {
                 return Err(failure.to_string().into());
             }
+            if let Some(request) = search.wanted_formulas().cloned() {
+                search.offer_formulas(self.models.offer(&request))?;
+            }
             for index in 0..search.pending().len() {
                 let query = search.query(index).cloned().ok_or("no query is pending")?;
                 let values = self.evaluate(&query)?;

@@ -269,3 +269,22 @@ pub(crate) const FORMS: Depth = Depth {
     confirmation: None,
     ..FULL
 };
+
+/// Formulas of a located law. Their priors lie about the values that its curve has, so that a fit begins near its end.
+pub(crate) const FORMULAS: Depth = Depth {
+    screen: ScreenDepth {
+        strengths: &[0.5],
+        shapes: &[0.0],
+        second_shapes: &[],
+    },
+    extension: ExtensionDepth {
+        plan: &[FitStep::Rounds { max: 2, trials: 6 }],
+        ..FULL.extension
+    },
+    refinement: RefinementDepth {
+        max_count: 16,
+        plan: &[FitStep::Rounds { max: 3, trials: 8 }],
+    },
+    confirmation: None,
+    ..FULL
+};

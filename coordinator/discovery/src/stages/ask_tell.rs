@@ -4,6 +4,7 @@ use crate::candidate::{Candidate, CandidateError};
 use crate::effect_search::state::EffectSearch;
 use crate::stages::branch::SearchBranch;
 use crate::stages::conclusion::Conclusion;
+use crate::stages::formula_fit::FormulaRequest;
 use crate::stages::query::Query;
 use crate::stages::stage::Stage;
 use crate::stages::state::SearchState;
@@ -117,11 +118,42 @@ impl DiscoverySearch {
             self.ask();
         }
         Ok(match self.stage {
+            _ if !complete => TellProgress::Waiting,
+            _ => self.progress(),
+        })
+    }
+
+    /// Returns where the search is between two rounds.
+    fn progress(&self) -> TellProgress {
+        match self.stage {
             Stage::Done(_) => TellProgress::Finished,
             Stage::Failed(failure) => TellProgress::Failed(failure),
-            _ if complete => TellProgress::NextRound,
-            _ => TellProgress::Waiting,
-        })
+            _ => TellProgress::NextRound,
+        }
+    }
+
+    /// Returns the law of which the search wants formulas. It has no pending query until they are offered.
+    #[must_use]
+    pub fn wanted_formulas(&self) -> Option<&FormulaRequest> {
+        match &self.stage {
+            Stage::AwaitsFormulas(request) => Some(request),
+            _ => None,
+        }
+    }
+
+    /// Takes formulas of the law that [`wanted_formulas`](Self::wanted_formulas) returns, as candidates, whose indices follow those of
+    /// the task. They are fitted through the model, and change neither the verdict nor a probability of an effect or a law. Without a
+    /// wanted law, nothing happens. Checked by `formulas::the_formula_that_acts_is_the_most_probable`.
+    ///
+    /// # Errors
+    /// [`CandidateError`] if a candidate is ill-defined; the search is unchanged then.
+    pub fn offer_formulas(&mut self, formulas: Vec<Candidate>) -> Result<TellProgress, CandidateError> {
+        formulas.iter().try_for_each(Candidate::check)?;
+        if let Some(request) = self.wanted_formulas().cloned() {
+            self.stage = self.state.fit_formulas(request, formulas);
+            self.ask();
+        }
+        Ok(self.progress())
     }
 
     /// Returns the result; `None` while the search is running, and where it failed.
@@ -144,7 +176,10 @@ impl DiscoverySearch {
 
     /// Begins the next round of this stage, or of the next stage that has queries.
     fn ask(&mut self) {
-        while !matches!(self.stage, Stage::Done(_) | Stage::Failed(_)) {
+        while !matches!(
+            self.stage,
+            Stage::AwaitsFormulas(_) | Stage::Done(_) | Stage::Failed(_)
+        ) {
             let queries = self.stage.queries();
             if !queries.is_empty() {
                 let proposals = queries.iter().enumerate();
@@ -180,8 +215,9 @@ impl DiscoverySearch {
             }
             Stage::Replacements(branches) => state.after_replacements(branches),
             Stage::Predictions(sets, validation) => state.after_predictions(sets, validation),
+            Stage::Formulas(first, branch) => state.after_formulas(*first, branch),
             Stage::NextRuns(runs) => state.done(runs.best()),
-            Stage::Done(_) | Stage::Failed(_) => return,
+            Stage::AwaitsFormulas(_) | Stage::Done(_) | Stage::Failed(_) => return,
         };
     }
 }

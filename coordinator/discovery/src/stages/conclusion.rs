@@ -6,6 +6,7 @@ use crate::laplace::draws::draws;
 use crate::laplace::fit::LaplaceFit;
 use crate::probability::DETECTED;
 use crate::stages::claimable_law::ClaimableLaw;
+use crate::stages::formula_fit::FormulaFit;
 use crate::stages::held_back::held_back;
 use crate::stages::hypotheses::{FittedReplacement, Hypotheses};
 use crate::stages::law_curve::LawCurve;
@@ -63,18 +64,21 @@ pub struct OutsideLaw {
     pub forms: Vec<WeighedForm>,
     /// The knots of its curve with their covariance; `None` where the curve was not fitted beyond the effects of this explanation.
     pub curve: Option<LawCurve>,
+    /// Formulas of the curve that were fitted through the model, by falling Bayes factor; none of a model with numerical noise.
+    pub formulas: Vec<FormulaFit>,
     /// Log predictive density of left-out levels over that of the base, and over that of the library's best.
     pub left_out_nats: [f64; 2],
 }
 
 impl OutsideLaw {
-    fn new(law: &ClaimableLaw, likelihood: &Likelihood, misfit: f64) -> Self {
+    fn new(law: &ClaimableLaw, formulas: &[FormulaFit], likelihood: &Likelihood, misfit: f64) -> Self {
         Self {
             law: law.law,
             candidate: law.candidate,
             log_bayes_factor: law.log_bayes_factor,
             forms: law_forms::weighed(&law.forms, &law.fit, likelihood, misfit),
             curve: law.curve.as_ref().map(|curve| curve.with_misfit(misfit)),
+            formulas: formulas.to_vec(),
             left_out_nats: law.left_out,
         }
     }
@@ -263,9 +267,7 @@ impl Conclusion {
         let (task, hypotheses) = (&state.task, &state.hypotheses);
         let likelihood = &task.likelihood;
         let weighing = Weighing::new(task, hypotheses);
-        let law = ClaimableLaw::new(task, hypotheses, weighing.best_with_law());
-        let is_incomplete = hypotheses.is_incomplete(likelihood);
-        let supported = SearchVerdict::new(task, &weighing, hypotheses, law.as_ref(), is_incomplete);
+        let (supported, law) = SearchVerdict::supported(task, hypotheses, &weighing);
         let law = law.filter(|_| supported == SearchVerdict::NotInLibrary);
         let (base, detected) = (hypotheses.base_fit(), hypotheses.detected());
         let explanation = law
@@ -322,7 +324,7 @@ impl Conclusion {
             outside: law
                 .as_ref()
                 .filter(|_| verdict == SearchVerdict::NotInLibrary)
-                .map(|law| OutsideLaw::new(law, likelihood, weighing.misfit)),
+                .map(|law| OutsideLaw::new(law, &hypotheses.formulas, likelihood, weighing.misfit)),
             combination,
             replacements,
             gains: hypotheses.gains(),

@@ -8,6 +8,7 @@ use crate::effect_search::ranking::EffectRanking;
 use crate::laplace::evidence::log_sum_exp;
 use crate::laplace::fit::{FittedModel, LaplaceFit};
 use crate::probability::{DETECTED, counted_evidence};
+use crate::stages::formula_fit::FormulaFit;
 use crate::stages::law_curve::LawCurve;
 use crate::stages::law_forms::FittedForm;
 use crate::stages::scored_fit::ScoredFit;
@@ -41,6 +42,8 @@ pub(super) struct Hypotheses {
     pub(super) unscanned: Option<Vec<Vec<usize>>>,
     /// The cross-validation of the best set that has a law beside effects; `None`: there is no such set.
     pub(super) law_beside_effects: Option<LawBesideEffects>,
+    /// Formulas of the law that is claimed, by falling Bayes factor.
+    pub(super) formulas: Vec<FormulaFit>,
     /// The leading sets with their log predictive density of left-out levels over that of the base.
     pub(super) predictive: Vec<(Vec<usize>, f64)>,
 }
@@ -200,6 +203,7 @@ impl Hypotheses {
             further_laws: Vec::new(),
             unscanned: None,
             law_beside_effects: None,
+            formulas: Vec::new(),
             predictive: Vec::new(),
         }
     }

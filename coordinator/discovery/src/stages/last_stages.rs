@@ -12,11 +12,11 @@ impl SearchState {
     pub(super) fn predictions(&self) -> Stage {
         let weighing = Weighing::new(&self.task, &self.hypotheses);
         let Some(base) = self.hypotheses.base_fit() else {
-            return self.next_runs();
+            return self.formulas();
         };
         let leading = weighing.leading(&self.hypotheses);
         if leading.len() < 2 {
-            return self.next_runs();
+            return self.formulas();
         }
         let mut models: Vec<ComparedModel> = vec![(Vec::new(), 0, base)];
         models.extend(leading.iter().map(|set| self.compared(set)));
@@ -25,7 +25,7 @@ impl SearchState {
         Stage::Predictions(sets, validation)
     }
 
-    /// Keeps the predictive densities of the sets, and begins the choice of runs.
+    /// Keeps the predictive densities of the sets.
     pub(super) fn after_predictions(&mut self, sets: &[Vec<usize>], validation: &CrossValidation) -> Stage {
         let gains = validation.gains().unwrap_or_default();
         // A measurement is left out once for each condition whose level it belongs to.
@@ -37,11 +37,11 @@ impl SearchState {
             .cloned()
             .zip(gains.into_iter().skip(1).map(|gain| gain / times));
         self.hypotheses.predictive = predictive.collect();
-        self.next_runs()
+        self.formulas()
     }
 
     /// Compares the open explanations on the runs that the rig could make.
-    fn next_runs(&self) -> Stage {
+    pub(super) fn next_runs(&self) -> Stage {
         let open = Weighing::new(&self.task, &self.hypotheses).open(&self.hypotheses);
         match RunSelection::new(&self.task, open) {
             Some(runs) => Stage::NextRuns(runs),

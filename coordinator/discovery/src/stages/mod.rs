@@ -16,6 +16,7 @@
 //! | 11 | laws beyond the leading effects, effects beyond the best laws, the forms of the law of the best such set, effects in the place of that law, and its cross-validation | `laws`, `law_beside_effects`, `law_substitutes` |
 //! | 12 | replacements: the base with a leading effect in the place of one of its effects | `replacement_fits` |
 //! | 12 | predictions of left-out levels by the leading sets | `last_stages`, `cross_validation` |
+//! | 12 | formulas of the law that is claimed, which the caller makes of its curve | `law_formulas`, `formula_fit` |
 //! | 13 | next runs: the runs that discriminate best between the explanations | `last_stages`, `next_run`, `run_information` |
 //! | 13 | errors that runs share, beside the best explanation | `shared_errors` |
 //! | 13 | probabilities, verdict and conclusion | `weighing`, `replacement`, `prior_sensitivity`, `noise_support`, `held_back`, `claimable_law`, `law_rivals`, `law_curve`, `law_forms`, `verdict`, `conclusion` |
@@ -36,12 +37,14 @@ pub(crate) mod conclusion;
 mod cross_validation;
 mod exchanges;
 mod families;
+pub(crate) mod formula_fit;
 mod held_back;
 mod hypotheses;
 mod last_stages;
 mod law_beside_effects;
 pub(crate) mod law_curve;
 pub(crate) mod law_forms;
+mod law_formulas;
 mod law_rivals;
 mod law_substitutes;
 mod laws;

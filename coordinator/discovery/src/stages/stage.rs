@@ -3,6 +3,7 @@
 use crate::stages::branch::SearchBranch;
 use crate::stages::conclusion::Conclusion;
 use crate::stages::cross_validation::CrossValidation;
+use crate::stages::formula_fit::FormulaRequest;
 use crate::stages::next_run::RunSelection;
 use crate::stages::query::Query;
 use inference::InferenceFailure;
@@ -36,6 +37,10 @@ pub(super) enum Stage {
     Replacements(Vec<SearchBranch>),
     /// Holds the effects of the leading sets.
     Predictions(Vec<Vec<usize>>, CrossValidation),
+    /// The caller is to offer formulas of the law that is claimed.
+    AwaitsFormulas(FormulaRequest),
+    /// Formulas of the law; holds the index of the first among the candidates.
+    Formulas(usize, SearchBranch),
     NextRuns(RunSelection),
     Done(Box<Conclusion>),
     Failed(InferenceFailure),
@@ -55,7 +60,8 @@ impl Stage {
             Self::SingleEffects(branch)
             | Self::Curves(branch)
             | Self::Forms(branch)
-            | Self::LawForms(_, branch) => Work::Branches(std::slice::from_mut(branch)),
+            | Self::LawForms(_, branch)
+            | Self::Formulas(_, branch) => Work::Branches(std::slice::from_mut(branch)),
             Self::BaseReduction(branches)
             | Self::Families(branches)
             | Self::BeamSearch(_, branches)
@@ -69,7 +75,7 @@ impl Stage {
             | Self::LawBesideEffects(_, validation)
             | Self::Predictions(_, validation) => Work::Validation(validation),
             Self::NextRuns(runs) => Work::Runs(runs),
-            Self::Done(_) | Self::Failed(_) => Work::Nothing,
+            Self::AwaitsFormulas(_) | Self::Done(_) | Self::Failed(_) => Work::Nothing,
         }
     }
 
@@ -92,6 +98,7 @@ impl Stage {
             }
             Self::Replacements(_) => "tries effects in the place of those of the model",
             Self::Predictions(..) => "tests the leading explanations on conditions that are left out",
+            Self::AwaitsFormulas(_) | Self::Formulas(..) => "fits formulas of a law outside the library",
             Self::NextRuns(_) => "chooses the runs that would tell",
             Self::Done(_) | Self::Failed(_) => "is over",
         }

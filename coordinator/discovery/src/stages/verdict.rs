@@ -26,6 +26,18 @@ pub enum SearchVerdict {
 }
 
 impl SearchVerdict {
+    /// Returns what the probabilities support, before objections, with the law that may be claimed.
+    pub(super) fn supported(
+        task: &SearchTask,
+        hypotheses: &Hypotheses,
+        weighing: &Weighing,
+    ) -> (Self, Option<ClaimableLaw>) {
+        let law = ClaimableLaw::new(task, hypotheses, weighing.best_with_law());
+        let is_incomplete = hypotheses.is_incomplete(&task.likelihood);
+        let verdict = Self::new(task, weighing, hypotheses, law.as_ref(), is_incomplete);
+        (verdict, law)
+    }
+
     /// Returns whether the verdict names a missing effect, class or law.
     pub fn is_claim(self) -> bool {
         matches!(self, Self::Named(_) | Self::Class(_) | Self::NotInLibrary)
@@ -37,7 +49,7 @@ impl SearchVerdict {
     /// # Arguments
     /// - `law`: the law that may be claimed. `is_incomplete`: whether the best explanation contradicts the data; with a model
     ///   discrepancy, the declared noise.
-    pub(super) fn new(
+    fn new(
         task: &SearchTask,
         weighing: &Weighing,
         hypotheses: &Hypotheses,

@@ -33,6 +33,8 @@ export const LIBRARY = {
   "Studies that tried the law": "Studien, die das Gesetz geprüft haben",
   "The first two differ most at a {0} of {1}{2} ({3} and {4}, {5} sds): a run there would split them.":
     "Die ersten beiden unterscheiden sich am meisten bei {0} = {1}{2} ({3} und {4}, {5} Standardabweichungen): eine Fahrt dort würde sie trennen.",
+  "The most probable {0} of them were also fitted to the measurements, through the model; their probabilities are from that.":
+    "Die wahrscheinlichsten {0} von ihnen wurden auch an die Messungen angepasst, durch das Modell; ihre Wahrscheinlichkeiten sind daraus.",
   "the law": "das Gesetz",
   "The library": "Die Bibliothek",
   "undecided": "offen",

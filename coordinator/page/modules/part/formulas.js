@@ -35,6 +35,15 @@ export function Formulas({ formulas, variable, add }) {
       curve's standard deviation, named by the simplest. Other classes together have P ${probability(formulas.others)}.
     </p>
     ${
+      Boolean(formulas.through_model) &&
+      html`
+        <p>
+          The most probable ${formulas.through_model} of them were also fitted to the measurements, through the model;
+          their probabilities are from that.
+        </p>
+      `
+    }
+    ${
       splitting &&
       html`
         <p>

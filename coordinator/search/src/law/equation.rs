@@ -1,117 +1,209 @@
-//! The formulas that a law's curve may follow, as they are recorded, with their effect files.
+//! The formulas that the curve of a law may follow: their candidates, which are fitted through the model, and their record.
 
-use std::fmt::Write;
-
-use discovery::LawCurve;
+use discovery::{Candidate, FormulaFit, LawCurve};
 use equation::{
-    Answer, FittedFormula, FormulaClass, FormulaLibrary, FormulaParameter, FormulaText, Host, Limit,
-    LocatedCurve, ParameterKind, answer, fits, splitting,
+    Answer, FormulaClass, FormulaLibrary, Host, Limit, LocatedCurve, WeighedFit, answer, fits, probabilities,
+    ranked, splitting,
 };
+use formula::Effect;
+use job::free_parameters;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
-use record::{LawFormula, LawFormulas, SplittingCondition};
+use record::{Extension, LawFormula, LawFormulas, SplittingCondition};
 
-use super::dependence::{Dependence, SOURCE};
+use super::dependence::Dependence;
+use super::formula_file::{DIGITS, effect_file, text};
 use super::range::rounded;
+use crate::candidate::CandidateEffect;
+use crate::entry::CandidateEntry;
 
 /// The largest number of nodes that a formula has, without its strength.
 const SIZE: usize = 7;
+/// Formulas that are fitted through the model, the most probable by the curve.
+const FITTED: usize = 100;
+/// A formula less probable than the best by more than this factor is not fitted through the model.
+const MIN_SHARE: f64 = 1e-6;
 /// The leading classes are recorded until they have this probability together, or are so many.
 const RECORDED: f64 = 0.95;
 const MAX_RECORDED: usize = 5;
 /// A condition splits two classes that differ there by more \[standard deviations\].
 const SPLIT: f64 = 2.0;
-/// Digits of fitted values.
-const DIGITS: usize = 4;
-/// Where a formula is undefined at 0, the variable is held at this share of its lowest value.
-const LEAST: f64 = 0.01;
 
-/// Searches the formulas of a law; `None` where its curve determines nothing.
-///
-/// The evidence of a formula is that of the curve's knots with their covariance, not of the measurements. Checked by
-/// `tests::a_curve_of_a_known_law_has_its_formula`.
-pub(crate) fn formulas(dependence: &Dependence, curve: &LawCurve) -> Option<LawFormulas> {
-    let host = match dependence.addition_sd {
-        None => Host::Factor,
-        Some(_) => Host::Addition,
-    };
-    let range = dependence.range;
-    let (knots, values) = (range.knots(), &curve.knots);
-    let curve = LocatedCurve::of_knots(host, &knots, values, &curve.covariance, range.is_logarithmic).ok()?;
-    let library = FormulaLibrary::new(SIZE, dependence.variable().unit_name() == "1");
-    let count = library.formulas().count();
-    let fitted = (0..count)
-        .into_par_iter()
-        .map(|formula| fits(&curve, &library, formula));
-    let fitted: Vec<_> = fitted.collect();
-    let answer = answer(&curve, fitted.into_iter().flatten());
-    let mut recorded: Vec<&FormulaClass> = Vec::new();
-    for class in answer.classes.iter().take(MAX_RECORDED) {
-        if recorded.iter().map(|class| class.probability).sum::<f64>() < RECORDED {
-            recorded.push(class);
+/// A formula that is fitted through the model.
+#[derive(Debug)]
+struct Offered {
+    fit: WeighedFit,
+    /// Its probability by the curve among all formulas.
+    probability: f64,
+    entry: CandidateEntry,
+}
+
+/// The formulas of the curve of a law.
+#[derive(Debug)]
+pub(crate) struct LawEquation {
+    dependence: Dependence,
+    curve: LocatedCurve,
+    /// All formulas by the curve, the most probable first.
+    ranked: Vec<WeighedFit>,
+    /// The number of formulas that were fitted to the curve.
+    count: usize,
+    /// Names of effects that are free in the job, one for each formula that is fitted through the model.
+    names: Vec<String>,
+    offered: Vec<Offered>,
+}
+
+impl LawEquation {
+    /// Fits the formulas to the curve of a law; `None` where the curve determines nothing.
+    ///
+    /// # Arguments
+    /// - `is_taken`: whether an effect of the job has a name.
+    pub(crate) fn new(
+        dependence: &Dependence,
+        curve: &LawCurve,
+        is_taken: impl Fn(&str) -> bool,
+    ) -> Option<Self> {
+        let host = match dependence.addition_sd {
+            None => Host::Factor,
+            Some(_) => Host::Addition,
+        };
+        let range = dependence.range;
+        let (knots, values) = (range.knots(), &curve.knots);
+        let curve =
+            LocatedCurve::of_knots(host, &knots, values, &curve.covariance, range.is_logarithmic).ok()?;
+        let library = FormulaLibrary::new(SIZE, dependence.variable().unit_name() == "1");
+        let count = library.formulas().count();
+        let fitted = (0..count)
+            .into_par_iter()
+            .map(|formula| fits(&curve, &library, formula));
+        let fitted: Vec<_> = fitted.collect();
+        let names = (1..).map(|number| format!("{}_formula_{number}", dependence.name()));
+        Some(Self {
+            dependence: *dependence,
+            curve,
+            ranked: ranked(fitted.into_iter().flatten()),
+            count,
+            names: names.filter(|name| !is_taken(name)).take(FITTED).collect(),
+            offered: Vec::new(),
+        })
+    }
+
+    /// Returns the leading formulas as candidates of a search, in the order in which [`record`](Self::record) takes their fits.
+    pub(crate) fn offer(&mut self) -> Vec<Candidate> {
+        let probabilities = probabilities(&self.ranked);
+        let leading = self.ranked.iter().zip(probabilities.iter().copied());
+        let leading = leading.filter(|(_, probability)| *probability > MIN_SHARE * probabilities[0]);
+        let offered = leading.zip(&self.names).filter_map(|((fit, probability), name)| {
+            Some(Offered {
+                fit: fit.clone(),
+                probability,
+                entry: self.entry(fit, name)?,
+            })
+        });
+        self.offered = offered.collect();
+        self.entries().map(|entry| entry.candidate.clone()).collect()
+    }
+
+    /// Returns the formulas that were offered.
+    pub(crate) fn entries(&self) -> impl Iterator<Item = &CandidateEntry> {
+        self.offered.iter().map(|offered| &offered.entry)
+    }
+
+    /// Makes the candidate of a formula; `None` if its file cannot be read.
+    fn entry(&self, fit: &WeighedFit, name: &str) -> Option<CandidateEntry> {
+        let text = text(&self.dependence, &self.curve, fit.formula());
+        let file = effect_file(&self.dependence, &text, name);
+        let effect = Effect::read(&file).ok()?;
+        let free = free_parameters(&effect).ok()?;
+        let candidate = CandidateEffect {
+            extension: Extension::File {
+                name: format!("{name}.toml"),
+                text: file,
+            },
+            name: name.to_owned(),
+        };
+        CandidateEntry::new(candidate, &effect, free, false)
+    }
+
+    /// Records the formulas; `None` without one.
+    ///
+    /// The evidence of a formula is that of the model with it, where it was fitted through the model. Otherwise it is that of the curve's
+    /// knots with their covariance. Formulas that were not fitted keep the probability that they have by the curve. Checked by
+    /// `tests::a_curve_of_a_known_law_has_its_formula`.
+    ///
+    /// # Arguments
+    /// - `of_model`: fits of the offered formulas through the model; none of a model that is too expensive for them.
+    pub(crate) fn record(&self, of_model: &[FormulaFit]) -> Option<LawFormulas> {
+        let refitted = of_model.iter().filter_map(|fit| {
+            let offered = self.offered.get(fit.formula)?;
+            offered
+                .fit
+                .refitted(&self.curve, &fit.parameters, fit.log_bayes_factor)
+        });
+        let refitted: Vec<WeighedFit> = refitted.collect();
+        let through_model = refitted.len() as u64;
+        let (share, answer) = match refitted.is_empty() {
+            true => (1.0, answer(&self.curve, self.ranked.iter().cloned())),
+            false => {
+                let share = self.offered.iter().map(|offered| offered.probability);
+                (share.sum(), answer(&self.curve, refitted))
+            }
+        };
+        let mut recorded: Vec<&FormulaClass> = Vec::new();
+        for class in answer.classes.iter().take(MAX_RECORDED) {
+            if recorded.iter().map(|class| class.probability).sum::<f64>() < RECORDED {
+                recorded.push(class);
+            }
+        }
+        let (first, second) = (answer.classes.first()?, answer.classes.get(1));
+        let leading = |class: &FormulaClass| &answer.formulas[answer.simplest(class)];
+        let split = second.and_then(|second| splitting(&self.curve, leading(first), leading(second)));
+        let split = split.filter(|split| split.sds > SPLIT);
+        let sum: f64 = recorded.iter().map(|class| class.probability).sum();
+        let classes = recorded.iter().zip(&self.names);
+        Some(LawFormulas {
+            classes: classes
+                .map(|(class, name)| self.recorded_class(&answer, class, share, name))
+                .collect(),
+            others: (1.0 - share * sum).max(0.0),
+            fitted: self.count as u64,
+            through_model,
+            splitting: split.map(|split| SplittingCondition {
+                at: rounded(split.at, 3),
+                unit: self.dependence.variable().unit_name().to_owned(),
+                laws: split.laws.map(|law| rounded(law, DIGITS)),
+                sds: split.sds,
+            }),
+        })
+    }
+
+    /// Records a class.
+    ///
+    /// # Arguments
+    /// - `share`: probability of all formulas of the answer. `name`: of the effect of the class.
+    fn recorded_class(
+        &self,
+        answer: &Answer,
+        class: &FormulaClass,
+        share: f64,
+        name: &str,
+    ) -> record::FormulaClass {
+        let (dependence, curve) = (&self.dependence, &self.curve);
+        let simplest = answer.simplest(class);
+        let others = class.members.iter().copied().filter(|k| *k != simplest);
+        let recorded = |k: usize| LawFormula {
+            formula: text(dependence, curve, &answer.formulas[k]).with_values(DIGITS),
+            probability: share * answer.formulas[k].probability,
+        };
+        let formula = &answer.formulas[simplest];
+        record::FormulaClass {
+            probability: share * class.probability,
+            members: std::iter::once(simplest).chain(others).map(recorded).collect(),
+            above: limit(dependence, formula.limit_above(curve), "large"),
+            below: formula
+                .limit_below(curve)
+                .map(|below| limit(dependence, below, "small")),
+            effect_file: effect_file(dependence, &text(dependence, curve, formula), name),
         }
     }
-    let (first, second) = (answer.classes.first()?, answer.classes.get(1));
-    let leading = |class: &FormulaClass| &answer.formulas[answer.simplest(class)];
-    let split = second.and_then(|second| splitting(&curve, leading(first), leading(second)));
-    let split = split.filter(|split| split.sds > SPLIT);
-    let sum: f64 = recorded.iter().map(|class| class.probability).sum();
-    let classes = recorded.iter().enumerate();
-    Some(LawFormulas {
-        classes: classes
-            .map(|(place, class)| recorded_class(dependence, &curve, &answer, class, place + 1))
-            .collect(),
-        others: (1.0 - sum).max(0.0),
-        fitted: count as u64,
-        splitting: split.map(|split| SplittingCondition {
-            at: rounded(split.at, 3),
-            unit: dependence.variable().unit_name().to_owned(),
-            laws: split.laws.map(|law| rounded(law, DIGITS)),
-            sds: split.sds,
-        }),
-    })
-}
-
-/// Records a class.
-///
-/// # Arguments
-/// - `number`: of the class, from 1, in the name of its effect.
-fn recorded_class(
-    dependence: &Dependence,
-    curve: &LocatedCurve,
-    answer: &Answer,
-    class: &FormulaClass,
-    number: usize,
-) -> record::FormulaClass {
-    let simplest = answer.simplest(class);
-    let others = class.members.iter().copied().filter(|k| *k != simplest);
-    let recorded = |k: usize| LawFormula {
-        formula: text(dependence, curve, &answer.formulas[k]).with_values(DIGITS),
-        probability: answer.formulas[k].probability,
-    };
-    let formula = &answer.formulas[simplest];
-    record::FormulaClass {
-        probability: class.probability,
-        members: std::iter::once(simplest).chain(others).map(recorded).collect(),
-        above: limit(dependence, formula.limit_above(curve), "large"),
-        below: formula
-            .limit_below(curve)
-            .map(|below| limit(dependence, below, "small")),
-        effect_file: effect_file(dependence, &text(dependence, curve, formula), number),
-    }
-}
-
-/// Writes a formula over the variable, which is held where the formula ends.
-fn text(dependence: &Dependence, curve: &LocatedCurve, formula: &FittedFormula) -> FormulaText {
-    let name = dependence.depends_on.name();
-    let [lowest, highest] = curve.range();
-    let mut variable = name.to_owned();
-    if lowest > 0.0 && !formula.law(curve, 0.0).is_finite() {
-        variable = format!("max({variable}, {:?})", rounded(LEAST * lowest, DIGITS));
-    }
-    if matches!(formula.limit_above(curve), Limit::Ends(_)) {
-        variable = format!("min({variable}, {highest:?})");
-    }
-    FormulaText::new(curve, formula, dependence.target(), &variable)
 }
 
 /// Writes where a law tends to: `tends to a factor of 0.7 for a large j`.
@@ -153,54 +245,6 @@ fn limit(dependence: &Dependence, limit: Limit, end: &str) -> String {
     }
 }
 
-/// Returns the effect file of a formula. Its priors are as wide as those of the search of formulas.
-fn effect_file(dependence: &Dependence, text: &FormulaText, number: usize) -> String {
-    let mut file = format!(
-        "name = \"{}_formula_{number}\"\nsummary = \"{} follows a formula of the {}\"\nsource = \"{SOURCE}\"\n{} = \"{}\"\n",
-        dependence.name(),
-        dependence.acts_on.words(),
-        dependence.depends_on.words(),
-        dependence.acts_on.name(),
-        text.formula,
-    );
-    for parameter in &text.parameters {
-        let (unit, prior) = prior(dependence, parameter);
-        let neutral = match parameter.kind {
-            ParameterKind::Strength => "neutral = 0.0\n",
-            _ => "",
-        };
-        // Writing to a text cannot fail.
-        let _ = write!(
-            file,
-            "\n# most probable value: {:?}\n[parameters.{}]\nunit = \"{unit}\"\n{neutral}prior = {prior}\n",
-            rounded(parameter.value, DIGITS),
-            parameter.name,
-        );
-    }
-    file
-}
-
-/// Returns unit and prior of a parameter.
-fn prior(dependence: &Dependence, parameter: &FormulaParameter) -> (&'static str, String) {
-    let (range, unit) = (dependence.range, dependence.variable().unit_name());
-    let value = rounded(parameter.value, DIGITS);
-    let normal = |sd: f64| format!("{{ normal = [{value:?}, {:?}] }}", rounded(sd, DIGITS));
-    match parameter.kind {
-        ParameterKind::Strength => {
-            let sd = rounded(2.0 * value.abs(), DIGITS);
-            (dependence.unit(), format!("{{ normal = [0.0, {sd:?}] }}"))
-        }
-        ParameterKind::Scale => (unit, format!("{{ lognormal = [{value:?}, 3.0] }}")),
-        ParameterKind::Shift => (unit, normal(0.5 * (range.highest - range.lowest))),
-        ParameterKind::Threshold => (
-            unit,
-            format!("{{ uniform = [{:?}, {:?}] }}", range.lowest, range.highest),
-        ),
-        ParameterKind::Exponent => ("1", normal(0.5)),
-        ParameterKind::Factor => ("1", normal(value.abs().max(0.5))),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -224,10 +268,15 @@ mod tests {
         )
     }
 
+    fn by_curve(dependence: &Dependence, curve: &LawCurve) -> LawFormulas {
+        let equation = LawEquation::new(dependence, curve, |_| false);
+        equation.and_then(|equation| equation.record(&[])).unwrap()
+    }
+
     #[test]
     fn a_curve_of_a_known_law_has_its_formula() {
         let (dependence, curve) = located("shear_v_t", 0.003, |v| -0.2 * (1.0 + v / 0.0005).ln());
-        let formulas = formulas(&dependence, &curve).unwrap();
+        let formulas = by_curve(&dependence, &curve);
         let shown = || format!("{:?}", formulas.classes);
         let members = formulas.classes.iter().flat_map(|class| &class.members);
         let mut members = members.map(|member| member.formula.as_str());
@@ -255,7 +304,8 @@ mod tests {
         let of = |classes: Vec<record::FormulaClass>| LawFormulas {
             others: 1.0 - classes.iter().map(|class| class.probability).sum::<f64>(),
             classes,
-            fitted: 1509,
+            fitted: 1284,
+            through_model: 100,
             splitting: Some(SplittingCondition {
                 at: 0.04,
                 unit: "m".into(),
@@ -290,7 +340,7 @@ mod tests {
             ("shear_slip", 0.02),
         ] {
             let (dependence, curve) = located(name, sd, |x| -0.4 * x / (x + 0.1));
-            let formulas = formulas(&dependence, &curve).unwrap();
+            let formulas = by_curve(&dependence, &curve);
             for class in &formulas.classes {
                 let effect = Effect::read(&class.effect_file);
                 let effect = effect.unwrap_or_else(|e| panic!("{e}: {}", class.effect_file));
