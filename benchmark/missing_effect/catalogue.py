@@ -22,7 +22,7 @@ def quantile(prior, u):
         low, high = np.log(numbers)
         return np.exp(low + (high - low) * ndtr(u))
     if kind == "half_normal":
-        return numbers[0] * ndtri(0.5 + 0.5 * ndtr(u))
+        return -numbers[0] * ndtri(0.5 * ndtr(-u))
     if kind == "lognormal":
         median, factor = numbers
         return median * factor**u

@@ -9,7 +9,9 @@ import wheel
 from catalogue import EFFECTS, quantile
 
 STRIPS = 30
-ITERATIONS = 20
+ITERATIONS = 30
+# How far out in its prior a parameter may lie; closer bounds make rivals look worse than they are [standard deviations].
+FARTHEST = 7.0
 # The strengths at which alternatives are screened, and how many of them are fitted.
 SCREENED, FITTED = (0.3, 1.2), 4
 
@@ -54,7 +56,7 @@ class Campaign:
             # Four dampings are tried at once.
             dampings = damping * np.array([0.1, 1.0, 10.0, 1000.0])
             steps = np.array([-np.linalg.solve(hessian + d * np.diag(np.diag(hessian)), gradient) for d in dampings])
-            trials = np.clip(u + np.clip(steps, -2, 2), -5, 5)
+            trials = np.clip(u + np.clip(steps, -2, 2), -FARTHEST, FARTHEST)
             r = residuals(self.values(trials, chosen, laws))
             costs = 0.5 * (np.sum(r**2, axis=1) + np.sum(trials**2, axis=1))
             k = int(np.argmin(costs))
