@@ -13,12 +13,9 @@ use crate::stages::weighing::Weighing;
 impl SearchState {
     /// Waits for formulas of the law that is claimed. A model with numerical noise is too expensive for them.
     pub(super) fn formulas(&self) -> Stage {
-        match self.formula_request() {
-            Some(request) if self.task.settings.smoothness == Smoothness::Smooth => {
-                Stage::AwaitsFormulas(request)
-            }
-            _ => self.next_runs(),
-        }
+        let is_smooth = self.task.settings.smoothness == Smoothness::Smooth;
+        let request = is_smooth.then(|| self.formula_request()).flatten();
+        request.map_or_else(|| self.next_runs(), Stage::AwaitsFormulas)
     }
 
     fn formula_request(&self) -> Option<FormulaRequest> {
