@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use crate::curve::{Host, LocatedCurve};
 use crate::enumeration::FormulaLibrary;
-use crate::fit::{Fit, Link, Problem};
+use crate::fit::{Fit, Problem};
+use crate::link::Link;
 use crate::program::Program;
 use crate::tree::{CONSTANTS, Tree};
 
@@ -111,10 +112,10 @@ impl Answer {
 }
 
 impl FittedFormula {
-    /// Returns the number of parameters: the strength and the constants.
+    /// Returns the number of parameters: the strength, where there is one, and the constants.
     #[must_use]
     pub fn parameters(&self) -> usize {
-        1 + self.tree.constants
+        usize::from(self.link.has_strength()) + self.tree.constants
     }
 
     pub(crate) fn problem<'a>(&'a self, curve: &'a LocatedCurve) -> Problem<'a> {
@@ -125,9 +126,15 @@ impl FittedFormula {
         }
     }
 
-    /// Returns the fitted constants, of the variable over its greatest magnitude.
-    pub(crate) fn constants(&self, curve: &LocatedCurve) -> [f64; CONSTANTS] {
+    /// Returns the fitted constants beside the strength, of the variable over its greatest magnitude: as many as the formula has, then 0.
+    #[must_use]
+    pub fn constants(&self, curve: &LocatedCurve) -> [f64; CONSTANTS] {
         self.problem(curve).constants(&self.fit.place)
+    }
+
+    /// Returns the formula's value, without its strength, at the end at which it vanishes; 0 without an end.
+    pub(crate) fn at_end(&self, curve: &LocatedCurve) -> f64 {
+        self.problem(curve).at_end(&self.constants(curve))
     }
 
     /// Returns the factor before the formula.
@@ -154,9 +161,10 @@ pub fn search(curve: &LocatedCurve, library: &FormulaLibrary) -> Answer {
 /// - `formula`: its place in [`FormulaLibrary::formulas`].
 #[must_use]
 pub fn fits(curve: &LocatedCurve, library: &FormulaLibrary, formula: usize) -> Vec<WeighedFit> {
-    let links: &[Link] = match curve.host {
-        Host::Addition => &[Link::Proportional],
-        Host::Factor => &[Link::Proportional, Link::Relative],
+    let links: &[Link] = match (&library.link, curve.host) {
+        (Some(link), _) => std::slice::from_ref(link),
+        (None, Host::Addition) => &[Link::Proportional],
+        (None, Host::Factor) => &[Link::Proportional, Link::Relative],
     };
     let tree = &library.formulas[formula];
     let fits = links.iter().filter_map(|link| fitted(curve, tree, *link));

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use crate::link::Link;
 use crate::op::Op;
 use crate::program::Program;
 use crate::tree::{CONSTANTS, Tree};
@@ -16,6 +17,16 @@ const PROBES: [[f64; CONSTANTS]; 2] = [[0.77, 1.39, 0.53], [-0.31, -0.83, -1.27]
 const NESTED: f64 = 0.1;
 /// Prior weight of a formula by each square and each root in it.
 const FIXED_POWER: f64 = 0.3;
+/// Leaves of the formulas of a law. Numbers come first, so that they stand on the left of a sum or product.
+const LEAVES: &[Op] = &[Op::Constant, Op::One, Op::Variable, Op::Threshold];
+/// Functions in the formulas of a law.
+const FUNCTIONS: &[Op] = &[Op::Exp, Op::Log, Op::Tanh, Op::Sqrt, Op::Square];
+/// Leaves of the formulas of a correction, which is smooth.
+const CORRECTION_LEAVES: &[Op] = &[Op::Constant, Op::One, Op::Variable];
+/// The most constants of a formula of a correction, beside its strength.
+const CORRECTION_CONSTANTS: usize = 2;
+/// Functions in the formulas of a correction.
+const CORRECTION_FUNCTIONS: &[Op] = &[Op::Exp, Op::Log, Op::Tanh, Op::Sqrt, Op::Square, Op::Sine];
 /// Nodes by which a formula of a pure number without a scale is shorter at most.
 const SHORTER: usize = 2;
 
@@ -25,6 +36,8 @@ pub struct FormulaLibrary {
     pub(crate) formulas: Vec<Arc<Tree>>,
     /// Sum of the prior weights of each size.
     sums: Vec<f64>,
+    /// The only link of the formulas; without one they have those of the curve's host.
+    pub(crate) link: Option<Link>,
 }
 
 impl FormulaLibrary {
@@ -39,14 +52,54 @@ impl FormulaLibrary {
     #[must_use]
     pub fn new(size: usize, is_dimensionless: bool) -> Self {
         let mut known = BTreeSet::new();
-        let mut formulas = roots(size, false, &mut known);
+        let law = Grammar {
+            leaves: LEAVES,
+            constants: CONSTANTS,
+            functions: FUNCTIONS,
+            link: Link::Proportional,
+            is_dimensionless: false,
+        };
+        let mut formulas = law.roots(size, &mut known);
         if is_dimensionless {
-            formulas.extend(roots(size.saturating_sub(SHORTER), true, &mut known));
+            let pure = Grammar {
+                is_dimensionless,
+                ..law
+            };
+            formulas.extend(pure.roots(size.saturating_sub(SHORTER), &mut known));
             formulas.sort_by_key(|tree| tree.size);
         }
+        Self::weighed(formulas, size, None)
+    }
+
+    /// Enumerates the formulas of a correction by one link, with the sine among their functions, without
+    /// thresholds, and with at most two constants beside the strength. Formulas without a value at the end of the
+    /// link are left out, and so are those that the link makes equal to a smaller one. Checked by
+    /// `library::corrections_vanish_at_their_end`.
+    ///
+    /// # Arguments
+    /// - `size`: as of [`new`](Self::new). `link`: the only one of the formulas.
+    #[must_use]
+    pub fn of_corrections(size: usize, link: Link) -> Self {
+        let grammar = Grammar {
+            leaves: CORRECTION_LEAVES,
+            constants: CORRECTION_CONSTANTS,
+            functions: CORRECTION_FUNCTIONS,
+            link,
+            is_dimensionless: false,
+        };
+        Self::weighed(grammar.roots(size, &mut BTreeSet::new()), size, Some(link))
+    }
+
+    fn weighed(formulas: Vec<Arc<Tree>>, size: usize, link: Option<Link>) -> Self {
         let mut sums = vec![0.0; size + 1];
         formulas.iter().for_each(|tree| sums[tree.size] += weight(tree));
-        Self { formulas, sums }
+        Self { formulas, sums, link }
+    }
+
+    /// Returns the link that all formulas have; `None` if it is that of the curve's host.
+    #[must_use]
+    pub const fn link(&self) -> Option<Link> {
+        self.link
     }
 
     /// Returns the logarithm of a formula's share among the formulas of its size.
@@ -56,8 +109,8 @@ impl FormulaLibrary {
     }
 
     /// Returns the formulas, by rising size.
-    pub fn formulas(&self) -> impl Iterator<Item = &Tree> {
-        self.formulas.iter().map(AsRef::as_ref)
+    pub fn formulas(&self) -> impl Iterator<Item = &Arc<Tree>> {
+        self.formulas.iter()
     }
 
     /// Returns the number of formulas of each size, from 0 on.
@@ -73,54 +126,71 @@ fn weight(tree: &Tree) -> f64 {
     libm::pow(NESTED, tree.nested as f64) * libm::pow(FIXED_POWER, tree.fixed_powers as f64)
 }
 
-/// Enumerates trees, and returns those that are formulas of their own.
-///
-/// # Arguments
-/// - `known`: what is listed already.
-fn roots(size: usize, is_dimensionless: bool, known: &mut BTreeSet<Vec<u32>>) -> Vec<Arc<Tree>> {
-    let mut levels: Vec<Vec<Arc<Tree>>> = vec![Vec::new(); size + 1];
-    let (mut parts, mut order) = (BTreeSet::new(), 0);
-    for nodes in 1..=size {
-        let mut level = Vec::new();
-        let mut keep = |tree: Option<Tree>| {
-            let Some(mut tree) = tree.filter(|tree| tree.size == nodes && tree.constants <= CONSTANTS) else {
-                return;
+/// What formulas are made of.
+#[derive(Debug, Clone, Copy)]
+struct Grammar {
+    leaves: &'static [Op],
+    /// The most constants.
+    constants: usize,
+    functions: &'static [Op],
+    /// How the formulas make the values of a curve.
+    link: Link,
+    is_dimensionless: bool,
+}
+
+impl Grammar {
+    /// Enumerates trees, and returns those that are formulas of their own.
+    ///
+    /// # Arguments
+    /// - `known`: what is listed already.
+    fn roots(self, size: usize, known: &mut BTreeSet<Vec<u32>>) -> Vec<Arc<Tree>> {
+        let mut levels: Vec<Vec<Arc<Tree>>> = vec![Vec::new(); size + 1];
+        let (mut parts, mut order) = (BTreeSet::new(), 0);
+        for nodes in 1..=size {
+            let mut level = Vec::new();
+            let mut keep = |tree: Option<Tree>| {
+                let Some(mut tree) =
+                    tree.filter(|tree| tree.size == nodes && tree.constants <= self.constants)
+                else {
+                    return;
+                };
+                if let Some(key) = key(&tree, None)
+                    && parts.insert(key)
+                {
+                    tree.order = order;
+                    order += 1;
+                    level.push(Arc::new(tree));
+                }
             };
-            if let Some(key) = key(&tree, false)
-                && parts.insert(key)
-            {
-                tree.order = order;
-                order += 1;
-                level.push(Arc::new(tree));
+            for op in self.leaves {
+                keep(Some(Tree::leaf(*op, self.is_dimensionless)));
             }
-        };
-        // Numbers come first, so that they stand on the left of a sum or product.
-        for op in [Op::Constant, Op::One, Op::Variable, Op::Threshold] {
-            keep(Some(Tree::leaf(op, is_dimensionless)));
-        }
-        for op in [Op::Exp, Op::Log, Op::Tanh, Op::Sqrt, Op::Square] {
-            levels[nodes - 1]
-                .iter()
-                .for_each(|child| keep(Tree::unary(op, child)));
-        }
-        if nodes > 2 {
-            levels[nodes - 2]
-                .iter()
-                .for_each(|child| keep(Tree::unary(Op::Power, child)));
-        }
-        for left in 1..nodes.saturating_sub(1) {
-            for (a, b) in pairs(&levels[left], &levels[nodes - 1 - left]) {
-                for op in [Op::Add, Op::Subtract, Op::Multiply, Op::Divide] {
-                    keep(Tree::binary(op, a, b));
+            for op in self.functions {
+                levels[nodes - 1]
+                    .iter()
+                    .for_each(|child| keep(Tree::unary(*op, child)));
+            }
+            if nodes > 2 {
+                levels[nodes - 2]
+                    .iter()
+                    .for_each(|child| keep(Tree::unary(Op::Power, child)));
+            }
+            for left in 1..nodes.saturating_sub(1) {
+                for (a, b) in pairs(&levels[left], &levels[nodes - 1 - left]) {
+                    for op in [Op::Add, Op::Subtract, Op::Multiply, Op::Divide] {
+                        keep(Tree::binary(op, a, b));
+                    }
                 }
             }
+            levels[nodes] = level;
         }
-        levels[nodes] = level;
+        let takes_shift = matches!(self.link, Link::Vanishing(_));
+        let roots = levels.into_iter().flatten();
+        let roots = roots.filter(|tree| tree.is_root() && !(takes_shift && tree.absorbs_shift));
+        roots
+            .filter(|tree| key(tree, Some(self.link)).is_some_and(|key| known.insert(key)))
+            .collect()
     }
-    let roots = levels.into_iter().flatten().filter(|tree| tree.is_root());
-    roots
-        .filter(|tree| key(tree, true).is_some_and(|key| known.insert(key)))
-        .collect()
 }
 
 fn pairs<'a>(
@@ -133,9 +203,12 @@ fn pairs<'a>(
 /// Returns what two formulas of the same values have in common; `None` where a formula is nowhere defined or does not vary.
 ///
 /// # Arguments
-/// - `is_root`: whether formulas count as equal up to a factor, and to the order and the signs of their constants.
-fn key(tree: &Tree, is_root: bool) -> Option<Vec<u32>> {
+/// - `link`: that of a whole formula; formulas then count as equal up to a strength, and to the order and the signs of their constants.
+fn key(tree: &Tree, link: Option<Link>) -> Option<Vec<u32>> {
     let program = Program::new(tree);
+    let is_root = link.is_some();
+    let link = link.unwrap_or(Link::Proportional);
+    let is_scaled = is_root && link.has_strength();
     let orders: &[[usize; CONSTANTS]] = match (is_root, tree.constants) {
         (true, 2) => &[[0, 1, 2], [1, 0, 2]],
         (true, 3) => &[[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]],
@@ -146,8 +219,9 @@ fn key(tree: &Tree, is_root: bool) -> Option<Vec<u32>> {
     let values = |(order, mask): (&[usize; CONSTANTS], usize)| -> Vec<u32> {
         let of_probe = |probe: &[f64; CONSTANTS]| -> Vec<f64> {
             let constants: [f64; CONSTANTS] = std::array::from_fn(|k| signed(mask, k, probe[order[k]]));
-            let values: Vec<f64> = POINTS.iter().map(|x| program.value(*x, &constants)).collect();
-            let scale = if is_root { values[2] } else { 1.0 };
+            let values = link.anchored_values(&program, &constants, &POINTS);
+            let values = values.unwrap_or_else(|| vec![f64::NAN; POINTS.len()]);
+            let scale = if is_scaled { values[2] } else { 1.0 };
             values.into_iter().map(|value| value / scale).collect()
         };
         let values = PROBES.iter().flat_map(of_probe);
@@ -158,7 +232,7 @@ fn key(tree: &Tree, is_root: bool) -> Option<Vec<u32>> {
         .flat_map(|order| (0..masks).map(move |mask| (order, mask)));
     let key = variants.map(values).min()?;
     let is_defined = key.iter().any(|bits| *bits != UNDEFINED);
-    let is_leaf = tree.size == 1;
+    let is_leaf = tree.size == 1 && link.end().is_none();
     let varies = key.iter().any(|bits| *bits != key[0]) || tree.op == Op::Threshold;
     (is_leaf || is_defined && varies).then_some(key)
 }

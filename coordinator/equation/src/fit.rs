@@ -3,7 +3,9 @@
 use nalgebra::{Matrix4, Vector4};
 
 use crate::curve::LocatedCurve;
+use crate::link::Link;
 use crate::program::{ConstantRole, Program};
+use crate::start::starts;
 use crate::tree::CONSTANTS;
 
 /// The largest number of parameters that a formula has: its strength and its constants.
@@ -11,9 +13,8 @@ pub(crate) const PARAMETERS: usize = 1 + CONSTANTS;
 /// Prior sd of the strength, over the root mean square of the curve, where the formula has a root mean square of 1.
 const STRENGTH_SD: f64 = 2.0;
 /// Prior sd of a constant's coordinate.
-const CONSTANT_SD: f64 = 1.5;
-/// Starts that are tried, by the number of constants, and those from which a fit begins.
-const STARTS: [usize; PARAMETERS] = [1, 12, 24, 40];
+pub(crate) const CONSTANT_SD: f64 = 1.5;
+/// Starts from which a fit begins.
 const BEGUN: usize = 3;
 const FIRST_STEPS: usize = 5;
 const STEPS: usize = 30;
@@ -22,19 +23,10 @@ const LEAST_GAIN: f64 = 1e-5;
 const FIRST_DAMPING: f64 = 1e-2;
 const MAX_DAMPING: f64 = 1e8;
 
-/// How a formula g with the strength a makes the values of a curve.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Link {
-    /// a g: an addition, or the logarithm of a factor exp(a g).
-    Proportional,
-    /// The logarithm of a factor 1 + a g.
-    Relative,
-}
-
 /// A formula, fitted to a curve.
 #[derive(Debug, Clone)]
 pub(crate) struct Fit {
-    /// Strength, in units of the formula's root mean square, and coordinates of the constants.
+    /// Strength, in units of the formula's root mean square, and coordinates of the constants. A link without a strength has 1 in its place.
     pub(crate) place: [f64; PARAMETERS],
     pub(crate) log_evidence: f64,
     /// Half the squares of residuals.
@@ -86,26 +78,40 @@ impl Problem<'_> {
 
     /// Half the squares of the coordinates over their prior sds.
     fn penalty(&self, place: &[f64; PARAMETERS]) -> f64 {
-        let strength = place[0] / self.strength_sd();
+        let strength = match self.link.has_strength() {
+            true => place[0] / self.strength_sd(),
+            false => 0.0,
+        };
         let fitted = self.program.roles.iter().zip(&place[1..]);
         let fitted = fitted.filter(|(role, _)| **role != ConstantRole::Threshold);
         let squares: f64 = fitted.map(|(_, t)| (t / CONSTANT_SD) * (t / CONSTANT_SD)).sum();
         0.5 * (strength * strength + squares)
     }
 
-    /// Returns the values of the formula over their root mean square, and that.
-    fn shape(&self, constants: &[f64]) -> Option<(Vec<f64>, f64)> {
+    /// Returns the values of the formula over their root mean square, and that; of a link without a strength the values alone, and 1.
+    fn shape(&self, constants: &[f64; CONSTANTS]) -> Option<(Vec<f64>, f64)> {
+        let at_end = self.at_end(constants);
         let points = self.curve.points.iter();
-        let mut values: Vec<f64> = points.map(|x| self.program.value(*x, constants)).collect();
+        let value = |x: &f64| self.link.anchored(self.program.value(*x, constants), at_end);
+        let mut values: Vec<f64> = points.map(value).collect();
         let size = root_mean_square(values.iter().copied())?;
+        if !self.link.has_strength() {
+            return Some((values, 1.0));
+        }
         values.iter_mut().for_each(|value| *value /= size);
         Some((values, size))
     }
 
+    /// Returns the formula's value at the end at which it vanishes; 0 without an end.
+    pub(crate) fn at_end(&self, constants: &[f64; CONSTANTS]) -> f64 {
+        let end = self.link.end();
+        end.map_or(0.0, |end| end.value(self.program, constants))
+    }
+
     fn linked(&self, value: f64) -> f64 {
         match self.link {
-            Link::Proportional => value,
             Link::Relative => libm::log(1.0 + value),
+            _ => value,
         }
     }
 
@@ -124,14 +130,19 @@ impl Problem<'_> {
     /// Completes a start by the best strength, and returns it with its objective.
     fn start(&self, mut place: [f64; PARAMETERS]) -> Option<(f64, [f64; PARAMETERS])> {
         let (shape, _) = self.shape(&self.constants(&place))?;
+        if !self.link.has_strength() {
+            place[0] = 1.0;
+            let objective = self.misfit(1.0, &shape) + self.penalty(&place);
+            return objective.is_finite().then_some((objective, place));
+        }
         let whitened = self.curve.whiten(&shape);
         let least = 1.0 / (self.strength_sd() * self.strength_sd());
         let target = match self.link {
-            Link::Proportional => self.curve.whitened.clone(),
             Link::Relative => {
                 let changes: Vec<f64> = self.curve.values.iter().map(|y| libm::expm1(*y)).collect();
                 self.curve.whiten(&changes)
             }
+            _ => self.curve.whitened.clone(),
         };
         let products: f64 = whitened.iter().zip(&target).map(|(a, b)| a * b).sum();
         let squares: f64 = whitened.iter().map(|a| a * a).sum();
@@ -145,41 +156,9 @@ impl Problem<'_> {
         objective.is_finite().then_some((objective, place))
     }
 
-    /// Lists starts: an even sequence over the prior, with a threshold in each gap between points.
-    fn starts(&self) -> Vec<[f64; PARAMETERS]> {
-        let roles = &self.program.roles;
-        let points = &self.curve.points;
-        let threshold = roles.iter().position(|role| *role == ConstantRole::Threshold);
-        let others = roles.len() - usize::from(threshold.is_some());
-        let gaps = if threshold.is_some() { points.len() - 1 } else { 1 };
-        let per_gap = match threshold {
-            Some(_) => [1, 4, 8, 8][others],
-            None => STARTS[others],
-        };
-        let mut starts = Vec::with_capacity(gaps * per_gap);
-        for gap in 0..gaps {
-            for index in 0..per_gap {
-                let mut place = [0.0; PARAMETERS];
-                let mut dimension = 0;
-                for (k, role) in roles.iter().enumerate() {
-                    place[k + 1] = match role {
-                        ConstantRole::Threshold => 0.5 * (points[gap] + points[gap + 1]),
-                        _ => {
-                            dimension += 1;
-                            CONSTANT_SD * normal_quantile(even(index + 1, dimension - 1))
-                        }
-                    };
-                }
-                starts.push(place);
-            }
-        }
-        starts
-    }
-
     /// Fits the formula; `None` where it is undefined or has a pole within the range from every start.
     pub(crate) fn fit(&self) -> Option<Fit> {
-        let mut starts: Vec<(f64, [f64; PARAMETERS])> = self
-            .starts()
+        let mut starts: Vec<(f64, [f64; PARAMETERS])> = starts(&self.program.roles, &self.curve.points)
             .into_iter()
             .filter_map(|place| self.start(place))
             .collect();
@@ -207,11 +186,19 @@ impl Problem<'_> {
             })
             .sum();
         let (shape, _) = self.shape(&self.constants(&place))?;
+        let mut covariance = cholesky.inverse();
+        let strength_width = match self.link.has_strength() {
+            true => libm::log(self.strength_sd()),
+            false => {
+                covariance[(0, 0)] = 0.0;
+                0.0
+            }
+        };
         Some(Fit {
             place,
-            log_evidence: -slope.objective - libm::log(self.strength_sd()) - widths - log_root,
+            log_evidence: -slope.objective - strength_width - widths - log_root,
             misfit: self.misfit(place[0], &shape),
-            covariance: cholesky.inverse(),
+            covariance,
         })
     }
 
@@ -252,17 +239,22 @@ impl Problem<'_> {
     /// Returns the objective with its gradient and Gauss–Newton matrix; the unit matrix beyond the formula's parameters.
     fn slope(&self, place: &[f64; PARAMETERS]) -> Option<Slope> {
         let (constants, stretches) = (self.constants(place), self.stretches(place));
-        let duals = self
-            .curve
-            .points
-            .iter()
-            .map(|x| self.program.dual(*x, &constants));
+        let at_end = self.link.at_end(self.program, &constants);
+        let points = self.curve.points.iter();
+        let duals = points.map(|x| self.link.anchored_dual(self.program.dual(*x, &constants), at_end));
         let duals: Vec<_> = duals.collect();
         let count = duals.len() as f64;
-        let size = root_mean_square(duals.iter().map(|dual| dual.value))?;
+        let mut size = root_mean_square(duals.iter().map(|dual| dual.value))?;
         let used = self.program.roles.len();
         let mut size_by = [0.0; CONSTANTS];
-        for (k, by) in size_by.iter_mut().enumerate().take(used) {
+        if !self.link.has_strength() {
+            size = 1.0;
+        }
+        for (k, by) in size_by
+            .iter_mut()
+            .enumerate()
+            .take(if self.link.has_strength() { used } else { 0 })
+        {
             *by = duals.iter().map(|dual| dual.value * dual.by[k]).sum::<f64>() / (size * count);
         }
         let mut predicted = Vec::with_capacity(duals.len());
@@ -271,8 +263,8 @@ impl Problem<'_> {
             let shape = dual.value / size;
             let inner = place[0] * shape;
             let link_slope = match self.link {
-                Link::Proportional => 1.0,
                 Link::Relative => 1.0 / (1.0 + inner),
+                _ => 1.0,
             };
             predicted.push(self.linked(inner));
             columns[0].push(link_slope * shape);
@@ -292,14 +284,17 @@ impl Problem<'_> {
             .map(|column| self.curve.whiten(column))
             .collect();
         let (mut gradient, mut hessian) = (Vector4::zeros(), Matrix4::identity());
+        let is_fixed = |j: usize| match j {
+            0 => !self.link.has_strength(),
+            j => self.program.roles[j - 1] == ConstantRole::Threshold,
+        };
         for (j, column) in columns.iter().enumerate() {
-            let is_fixed = j > 0 && self.program.roles[j - 1] == ConstantRole::Threshold;
-            if is_fixed {
+            if is_fixed(j) {
                 continue;
             }
             let sd = if j == 0 { self.strength_sd() } else { CONSTANT_SD };
             gradient[j] = dot(column, &residuals) + place[j] / (sd * sd);
-            for k in 0..=j {
+            for k in (0..=j).filter(|k| !is_fixed(*k)) {
                 hessian[(j, k)] = dot(column, &columns[k]);
                 hessian[(k, j)] = hessian[(j, k)];
             }
@@ -324,6 +319,13 @@ impl Problem<'_> {
         let Some((_, size)) = self.shape(&constants) else {
             return false;
         };
+        let at_end = self.at_end(&constants);
+        let anchored = self
+            .link
+            .anchored_values(self.program, &constants, &self.curve.points);
+        if anchored.is_none() {
+            return false;
+        }
         let mut signs: Vec<f64> = Vec::new();
         self.curve.grid.iter().all(|x| {
             let (mut index, mut is_pole) = (0, false);
@@ -334,13 +336,20 @@ impl Problem<'_> {
                 is_pole |= divisor * signs[index] <= 0.0;
                 index += 1;
             });
-            !is_pole && self.linked(place[0] * value / size).is_finite()
+            !is_pole
+                && self
+                    .linked(place[0] * self.link.anchored(value, at_end) / size)
+                    .is_finite()
         })
     }
 
     /// Returns the law at a point of the variable over its scale; for a factor its logarithm. NaN where it is undefined.
     pub(crate) fn law(&self, place: &[f64; PARAMETERS], size: f64, x: f64) -> f64 {
-        self.linked(place[0] * self.program.value(x, &self.constants(place)) / size)
+        let constants = self.constants(place);
+        let value = self
+            .link
+            .anchored(self.program.value(x, &constants), self.at_end(&constants));
+        self.linked(place[0] * value / size)
     }
 
     /// Returns the law at the points at which formulas are compared.
@@ -374,24 +383,4 @@ fn root_mean_square(values: impl ExactSizeIterator<Item = f64>) -> Option<f64> {
     let count = values.len() as f64;
     let size = (values.map(|value| value * value).sum::<f64>() / count).sqrt();
     (size > 1e-12 && size < 1e12).then_some(size)
-}
-
-/// Returns a number of Halton's sequence, in 0 to 1.
-fn even(index: usize, dimension: usize) -> f64 {
-    let base = [2, 3, 5][dimension];
-    let (mut rest, mut share, mut value) = (index, 1.0, 0.0);
-    while rest > 0 {
-        share /= base as f64;
-        value += share * (rest % base) as f64;
-        rest /= base;
-    }
-    value
-}
-
-/// Returns a quantile of the standard normal distribution, to 0.02: it places starts alone (Hastings 1955, 26.2.22).
-fn normal_quantile(p: f64) -> f64 {
-    let tail = p.min(1.0 - p);
-    let t = libm::sqrt(-2.0 * libm::log(tail));
-    let z = t - (2.30753 + 0.27061 * t) / (1.0 + 0.99229 * t + 0.04481 * t * t);
-    if p < 0.5 { -z } else { z }
 }

@@ -78,7 +78,7 @@ impl FittedFormula {
     /// Returns the sd of the law as the curve has it, by its parameters.
     fn sd(&self, curve: &LocatedCurve, at: f64) -> f64 {
         let slopes: [f64; PARAMETERS] = std::array::from_fn(|k| {
-            if k >= self.parameters() {
+            if k > self.tree.constants {
                 return 0.0;
             }
             let moved = |by: f64| {

@@ -27,6 +27,8 @@ pub enum Op {
     Log,
     /// The hyperbolic tangent.
     Tanh,
+    /// The sine, in formulas of corrections alone.
+    Sine,
     /// The square root.
     Sqrt,
     /// The second power.

@@ -29,7 +29,7 @@ pub(crate) struct Dual {
 }
 
 impl Dual {
-    const fn of(value: f64) -> Self {
+    pub(crate) const fn of(value: f64) -> Self {
         Self {
             value,
             by: [0.0; CONSTANTS],
@@ -45,7 +45,7 @@ impl Dual {
     }
 
     /// A function of two values, with its derivatives by them.
-    fn chain2(self, other: Self, value: f64, slopes: [f64; 2]) -> Self {
+    pub(crate) fn chain2(self, other: Self, value: f64, slopes: [f64; 2]) -> Self {
         let mut by = [0.0; CONSTANTS];
         for ((by, a), b) in by.iter_mut().zip(self.by).zip(other.by) {
             *by = slopes[0] * a + slopes[1] * b;
@@ -131,6 +131,7 @@ impl Program {
                         Op::Exp => libm::exp(a),
                         Op::Log => libm::log(a),
                         Op::Tanh => libm::tanh(a),
+                        Op::Sine => libm::sin(a),
                         Op::Sqrt => a.sqrt(),
                         _ => a * a,
                     };
@@ -193,6 +194,7 @@ impl Program {
                             let value = libm::tanh(a.value);
                             a.chain(value, 1.0 - value * value)
                         }
+                        Op::Sine => a.chain(libm::sin(a.value), libm::cos(a.value)),
                         Op::Sqrt => {
                             let value = a.value.sqrt();
                             a.chain(value, if value > 0.0 { 0.5 / value } else { 0.0 })

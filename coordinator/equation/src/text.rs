@@ -4,7 +4,8 @@ use std::fmt;
 
 use crate::answer::FittedFormula;
 use crate::curve::{Host, LocatedCurve};
-use crate::fit::{Link, PARAMETERS};
+use crate::fit::PARAMETERS;
+use crate::link::Link;
 use crate::op::Op;
 use crate::tree::{CONSTANTS, Tree};
 
@@ -116,7 +117,17 @@ impl FormulaText {
                 match (host, link) {
                     (Host::Factor, Link::Proportional) => format!("{target} * exp(strength * {shape})"),
                     (Host::Factor, Link::Relative) => format!("{target} * (1 + strength * {shape})"),
-                    (Host::Addition, _) => format!("{target} + strength * {shape}"),
+                    (Host::Addition, Link::Proportional | Link::Relative) => {
+                        format!("{target} + strength * {shape}")
+                    }
+                    (_, Link::Vanishing(_)) => {
+                        let end = writer.parameter(ParameterKind::Factor, formula.at_end(curve));
+                        format!("{target} + strength * ({shape} - {end})")
+                    }
+                    (_, Link::Normalised(_)) => {
+                        let end = writer.parameter(ParameterKind::Factor, formula.at_end(curve));
+                        format!("{target} + strength * ({shape} / {end} - 1)")
+                    }
                 }
             }
         };
@@ -255,6 +266,7 @@ impl Writer<'_> {
             (Op::Exp, Some(a), _) => function("exp", self.part(a)),
             (Op::Log, Some(a), _) => function("log", self.part(a)),
             (Op::Tanh, Some(a), _) => function("tanh", self.part(a)),
+            (Op::Sine, Some(a), _) => function("sin", self.part(a)),
             (Op::Sqrt, Some(a), _) => function("sqrt", self.part(a)),
             (Op::Square, Some(a), _) => {
                 Part::new(Level::Power, format!("{}^2", self.part(a).within(Level::Atom)))
@@ -322,6 +334,7 @@ impl fmt::Display for Tree {
             (Op::Exp, Some(a), _) => write!(f, "exp({a})"),
             (Op::Log, Some(a), _) => write!(f, "log({a})"),
             (Op::Tanh, Some(a), _) => write!(f, "tanh({a})"),
+            (Op::Sine, Some(a), _) => write!(f, "sin({a})"),
             (Op::Sqrt, Some(a), _) => write!(f, "sqrt({a})"),
             (Op::Square, Some(a), _) => write!(f, "({a})^2"),
             (Op::Variable, ..) => write!(f, "x"),

@@ -109,7 +109,7 @@ impl Tree {
                     || matches!(inner, Op::Exp | Op::Sqrt | Op::Square | Op::Divide)
                     || child.is_scaled() && child.core().op == Op::Exp
             }
-            Op::Tanh => matches!(inner, Op::Log | Op::Threshold),
+            Op::Tanh | Op::Sine => matches!(inner, Op::Log | Op::Threshold),
             Op::Sqrt => {
                 child.absorbs_power
                     || child.is_scaled()
@@ -135,7 +135,7 @@ impl Tree {
         let unit = child.unit.unary(op)?;
         let keeps = matches!(op, Op::Sqrt | Op::Square | Op::Power);
         let is_power = op == Op::Power;
-        let transcends = matches!(op, Op::Exp | Op::Log | Op::Tanh);
+        let transcends = matches!(op, Op::Exp | Op::Log | Op::Tanh | Op::Sine);
         Some(Tree {
             op,
             left: Some(child.clone()),

@@ -22,8 +22,8 @@ impl Unit {
     /// Returns the unit of an operation of one child; `None` where it needs a pure number.
     pub(crate) fn unary(self, op: Op) -> Option<Unit> {
         match (op, self) {
-            (Op::Exp | Op::Log | Op::Tanh, Unit::Free | Unit::Fixed(0)) => Some(Unit::ONE),
-            (Op::Exp | Op::Log | Op::Tanh, _) => None,
+            (Op::Exp | Op::Log | Op::Tanh | Op::Sine, Unit::Free | Unit::Fixed(0)) => Some(Unit::ONE),
+            (Op::Exp | Op::Log | Op::Tanh | Op::Sine, _) => None,
             (Op::Power, Unit::Fixed(0)) => Some(Unit::ONE),
             (Op::Power, Unit::Fixed(_)) => Some(Unit::Fitted),
             (Op::Sqrt, Unit::Fixed(eighths)) => (eighths % 2 == 0).then_some(Unit::Fixed(eighths / 2)),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use equation::FormulaLibrary;
+use equation::{End, FormulaLibrary, Link};
 
 use crate::setup::LIBRARY;
 
@@ -49,4 +49,29 @@ fn a_variable_with_a_unit_enters_no_function_without_a_scale() {
         assert!(!with_unit.contains(text) && pure.contains(text), "{text}");
     }
     assert!(with_unit.is_subset(&pure));
+}
+
+#[test]
+fn laws_of_a_variable_with_a_unit_have_no_sine() {
+    assert_eq!(LIBRARY.formulas().count(), 1284);
+    assert!(!texts(&LIBRARY).iter().any(|text| text.contains("sin(")));
+}
+
+#[test]
+fn corrections_vanish_at_their_end() {
+    let at_zero = FormulaLibrary::of_corrections(6, Link::Vanishing(End::Zero));
+    let listed = texts(&at_zero);
+    for text in ["x", "(x)^c", "exp(c * x)", "log((1 + c * x))", "sin(c * x) / (x)"] {
+        assert!(listed.contains(text), "{text}");
+    }
+    // The value at the end is taken off, log x has none, and a summand changes nothing.
+    for text in ["(1 - exp(c * x))", "log(x)", "(c + exp(c * x))"] {
+        assert!(!listed.contains(text), "{text}");
+    }
+    let to_infinity = texts(&FormulaLibrary::of_corrections(
+        6,
+        Link::Normalised(End::Infinity),
+    ));
+    assert!(!to_infinity.contains("x") && !to_infinity.contains("exp(c * x)"));
+    assert!(to_infinity.contains("exp(c / (x))"));
 }

@@ -1,6 +1,6 @@
 //! The law of a curve is found, and what cannot be told is said.
 
-use equation::{Answer, Host, fits};
+use equation::{Answer, End, FormulaLibrary, Host, Link, fits, search};
 
 use crate::setup::{LIBRARY, answer, curve};
 
@@ -47,4 +47,25 @@ fn the_order_of_the_fits_does_not_count() {
     };
     let (one_way, backwards) = (answer(&curve).0, equation::answer(&curve, backwards));
     assert_eq!(bits(&one_way), bits(&backwards));
+}
+
+/// The formula of a correction that vanishes at 0, with its fit.
+fn correction(link: Link, law: impl Fn(f64) -> f64) -> (String, usize, f64) {
+    let library = FormulaLibrary::of_corrections(6, link);
+    let curve = curve(Host::Addition, 0.01, law);
+    let answer = search(&curve, &library);
+    let best = &answer.formulas[answer.simplest(&answer.classes[0])];
+    (best.tree.to_string(), best.parameters(), best.law(&curve, 1e-5))
+}
+
+#[test]
+fn corrections_that_vanish_at_an_end_are_found() {
+    let vanishing = Link::Vanishing(End::Zero);
+    let (formula, parameters, at_end) = correction(vanishing, |x| 2.0 * ((-x / 0.4).exp() - 1.0));
+    assert_eq!((formula.as_str(), parameters), ("exp(c * x)", 2));
+    assert!(at_end.abs() < 1e-3, "{at_end}");
+    let normalised = Link::Normalised(End::Zero);
+    let (formula, parameters, at_end) = correction(normalised, |x| (x / 0.3).sin() / (x / 0.3) - 1.0);
+    assert_eq!((formula.as_str(), parameters), ("sin(c * x) / (x)", 1));
+    assert!(at_end.abs() < 1e-3, "{at_end}");
 }

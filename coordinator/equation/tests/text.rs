@@ -1,6 +1,6 @@
 //! Formulas as text.
 
-use equation::{FormulaText, Host, ParameterKind, fits, ranked};
+use equation::{End, FormulaLibrary, FormulaText, Host, Link, ParameterKind, fits, ranked, search};
 use formula::expression::Expression;
 use formula::unit::Unit;
 
@@ -83,4 +83,21 @@ fn values_stand_in_the_place_of_names() {
     let text = FormulaText::new(&curve, &answer.formulas[0], "torque", "slip");
     assert_eq!(text.formula, "torque + strength * (1 - exp(-slip / scale))");
     assert_eq!(text.with_values(1), "torque - 3 * (1 - exp(-slip / 0.2))");
+}
+
+#[test]
+fn a_correction_is_written_less_its_value_at_the_end() {
+    let curve = curve(Host::Addition, 0.01, |x| (-x / 0.4).exp() - 1.0);
+    let written = |link: Link| {
+        let answer = search(&curve, &FormulaLibrary::of_corrections(4, link));
+        FormulaText::new(&curve, &answer.formulas[0], "gain", "x").with_values(1)
+    };
+    assert_eq!(
+        written(Link::Vanishing(End::Zero)),
+        "gain + 1 * (exp(-x / 0.4) - 1)"
+    );
+    assert_eq!(
+        written(Link::Normalised(End::Zero)),
+        "gain + 1 * (exp(-x / 0.4) / 1 - 1)"
+    );
 }
