@@ -7,7 +7,8 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use benchmark::challenge::bioreactor::{self, Campaign};
-use benchmark::challenge::correction::{SCENARIOS, searched};
+use benchmark::challenge::correction::{Libraries, Said, Search};
+use benchmark::challenge::scenario::SCENARIOS;
 use benchmark::error::StudyError;
 use benchmark::parallel::each;
 use equation::FormulaLibrary;
@@ -105,40 +106,77 @@ fn bioreactors(seeds: u64, first: u64, is_shown: bool) -> Result<(), StudyError>
     Ok(())
 }
 
+/// Cases of corrections, and what their answers are.
+#[derive(Default)]
+struct Tally {
+    cases: usize,
+    in_class: usize,
+    listed: usize,
+    simplest: usize,
+    credible: usize,
+    certain: usize,
+    decidable: usize,
+    decidable_in_class: usize,
+}
+
+impl Tally {
+    fn add(&mut self, said: &Said) {
+        self.cases += 1;
+        self.in_class += usize::from(said.is_in_class);
+        self.listed += usize::from(said.is_listed);
+        self.simplest += usize::from(said.is_simplest);
+        self.credible += usize::from(said.is_credible);
+        self.certain += usize::from(said.probability > 0.9);
+        self.decidable += usize::from(said.is_decidable);
+        self.decidable_in_class += usize::from(said.is_decidable && said.is_in_class);
+    }
+
+    fn cells(&self) -> String {
+        format!(
+            "{}/{} | {} | {} | {} | {} | {}/{}",
+            self.in_class,
+            self.cases,
+            self.listed,
+            self.simplest,
+            self.credible,
+            self.certain,
+            self.decidable_in_class,
+            self.decidable
+        )
+    }
+}
+
 fn corrections(seeds: u64, first: u64) -> Result<(), StudyError> {
-    let library = FormulaLibrary::new(NODES, false);
+    let libraries = Libraries::new(NODES);
     println!(
-        "| noise | correction | in the class | simplest member | P > .9 | members, median | the simplest, seed {first} |\n|---|---|---|---|---|---|---|"
+        "| noise | correction | in the class | listed | simplest member | in the 95 % set | P > .9 | in the class, of decidable | classes of the set, members listed, median | the simplest, seed {first} |\n|---|---|---|---|---|---|---|---|---|---|"
     );
     for noise in NOISES {
-        let (mut in_class, mut simplest) = (0, 0);
+        let mut all = Tally::default();
         for (number, scenario) in SCENARIOS.iter().enumerate() {
+            let search = Search::new(scenario, &libraries);
             let said = each(seeds, |k| {
-                searched(scenario, &library, noise, first + k, number as u64).ok_or("no curve")
+                search.said(noise, first + k, number as u64).ok_or("no curve")
             })?;
-            let count = |test: &dyn Fn(&benchmark::challenge::correction::Said) -> bool| {
-                said.iter().filter(|s| test(s)).count()
+            let median = |count: &dyn Fn(&Said) -> usize| {
+                let mut counts: Vec<usize> = said.iter().map(count).collect();
+                counts.sort_unstable();
+                counts[counts.len() / 2]
             };
-            let mut members: Vec<usize> = said.iter().map(|s| s.members).collect();
-            members.sort_unstable();
-            in_class += count(&|s| s.is_in_class);
-            simplest += count(&|s| s.is_simplest);
+            let mut tally = Tally::default();
+            said.iter().for_each(|said| tally.add(said));
+            said.iter().for_each(|said| all.add(said));
             println!(
-                "| {:.0} % | {} | {} | {} | {} | {} | {} |",
+                "| {:.0} % | {} | {} | {}, {} | {} |",
                 100.0 * noise,
                 scenario.name,
-                count(&|s| s.is_in_class),
-                count(&|s| s.is_simplest),
-                count(&|s| s.probability > 0.9),
-                members[members.len() / 2],
+                tally.cells(),
+                median(&|said| said.credible),
+                median(&|said| said.members),
                 said[0].simplest
             );
         }
-        let all = seeds as usize * SCENARIOS.len();
-        println!(
-            "| {:.0} % | **all** | {in_class}/{all} | {simplest}/{all} | | | |",
-            100.0 * noise
-        );
+        println!("| {:.0} % | **all** | {} | | |", 100.0 * noise, all.cells());
     }
     Ok(())
 }

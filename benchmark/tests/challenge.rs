@@ -3,7 +3,8 @@
 use std::sync::LazyLock;
 
 use benchmark::challenge::bioreactor;
-use benchmark::challenge::correction::{SCENARIOS, searched};
+use benchmark::challenge::correction::{Libraries, Search};
+use benchmark::challenge::scenario::SCENARIOS;
 use equation::FormulaLibrary;
 
 static LIBRARY: LazyLock<FormulaLibrary> = LazyLock::new(|| FormulaLibrary::new(7, false));
@@ -30,14 +31,21 @@ fn nothing_is_claimed_beyond_a_growth_rate_that_is_given() {
 }
 
 #[test]
-fn a_correction_of_a_textbook_law_has_its_formula() {
-    let drag = SCENARIOS
-        .iter()
-        .find(|scenario| scenario.name == "nonlinear drag");
-    let said = searched(drag.expect("the scenario"), &LIBRARY, 0.01, 1, 5).expect("a curve");
-    assert!(
-        said.is_in_class && said.is_simplest && said.probability > 0.5,
-        "{}",
-        said.simplest
-    );
+fn corrections_of_textbook_laws_have_their_formulas() {
+    let libraries = Libraries::new(6);
+    for (name, noise) in [
+        ("nonlinear drag", 0.01),
+        ("screened Coulomb force", 0.05),
+        ("sinc of kinetic energy", 0.01),
+    ] {
+        let mut scenarios = SCENARIOS.iter().enumerate();
+        let scenario = scenarios.find(|(_, scenario)| scenario.name == name);
+        let (number, scenario) = scenario.expect("the scenario");
+        let said = Search::new(scenario, &libraries).said(noise, 1, number as u64);
+        let said = said.expect("a curve");
+        assert!(
+            said.is_in_class && said.is_simplest && said.is_credible && said.probability > 0.5,
+            "{name}: {said:?}"
+        );
+    }
 }

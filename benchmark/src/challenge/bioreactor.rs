@@ -15,7 +15,7 @@
 //! # Source
 //! Documentation of `SciML`, "Optimal data gathering for missing physics": equations, values, and the plan of the experiments.
 
-use equation::FormulaLibrary;
+use equation::{FormulaLibrary, Link};
 use statistics::rng::Stream;
 
 use super::design;
@@ -133,7 +133,11 @@ fn find(system: &DynamicSystem, experiments: &[Experiment], library: &FormulaLib
     let formulas = weighed(system, experiments, &law, library);
     let classes = class_probabilities(&formulas);
     let truth = Truth::new(monod, law.curve.range(), 1);
-    let of_class = |class: usize| formulas.iter().any(|f| f.class == class && truth.is(&f.tree));
+    let of_class = |class: usize| {
+        formulas
+            .iter()
+            .any(|f| f.class == class && truth.is(&f.tree, Link::Proportional))
+    };
     let is_true = (0..classes.len()).map(of_class).collect();
     Some(Finding {
         law,

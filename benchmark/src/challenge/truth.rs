@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use equation::{Host, Link, LocatedCurve, Tree, fitted};
+use equation::{FittedFormula, FormulaLibrary, Host, Link, LocatedCurve, Tree, fitted};
+
+use super::limiting_form::is_limit;
 
 /// Points of the exact curve.
 const POINTS: usize = 40;
@@ -36,9 +38,25 @@ impl Truth {
     }
 
     /// Returns whether a formula gives the exact curve with no more constants than the law has.
-    pub fn is(&self, tree: &Arc<Tree>) -> bool {
-        let fit = |exact: &LocatedCurve| fitted(exact, tree, Link::Proportional);
-        let misfit = self.exact.as_ref().and_then(fit).map(|fit| fit.misfit);
-        tree.constants <= self.constants && misfit.is_some_and(|misfit| misfit < MAX_MISFIT)
+    pub fn is(&self, tree: &Arc<Tree>, link: Link) -> bool {
+        self.exactly(tree, link).is_some()
+    }
+
+    /// Returns the formulas of a library that are the hidden one, by rising size. Formulas that are so in the limit of a constant alone are
+    /// left out.
+    pub fn formulas(&self, library: &FormulaLibrary, link: Link) -> Vec<Arc<Tree>> {
+        let is_formula = |tree: &&Arc<Tree>| {
+            let (Some(exact), Some(formula)) = (&self.exact, self.exactly(tree, link)) else {
+                return false;
+            };
+            !is_limit(exact, &formula)
+        };
+        library.formulas().filter(is_formula).cloned().collect()
+    }
+
+    /// Returns a formula as it gives the exact curve; `None` if it does not, or has more constants than the law.
+    fn exactly(&self, tree: &Arc<Tree>, link: Link) -> Option<FittedFormula> {
+        let exact = self.exact.as_ref().filter(|_| tree.constants <= self.constants)?;
+        fitted(exact, tree, link).filter(|formula| formula.misfit < MAX_MISFIT)
     }
 }
