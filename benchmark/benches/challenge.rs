@@ -2,15 +2,18 @@
 //!
 //! `cargo bench -p benchmark --bench challenge -- bioreactor [SEEDS [FIRST]] [--transcript]`
 //! `cargo bench -p benchmark --bench challenge -- corrections [SEEDS [FIRST]]`
+//! `cargo bench -p benchmark --bench challenge -- odebench [SEEDS [FIRST]]`
 
 use std::process::ExitCode;
 use std::time::Instant;
 
 use benchmark::challenge::bioreactor::{self, Campaign};
-use benchmark::challenge::correction::{Libraries, Said, Search};
+use benchmark::challenge::correction::{self, Libraries, Search};
+use benchmark::challenge::odebench::{self, judgement, system::OdeSystem, term_formula::TermLibrary};
 use benchmark::challenge::scenario::SCENARIOS;
 use benchmark::error::StudyError;
 use benchmark::parallel::each;
+use benchmark::process::cpu_s;
 use equation::FormulaLibrary;
 
 /// The largest number of nodes of a formula of a correction: two laws have eight.
@@ -31,7 +34,8 @@ fn main() -> ExitCode {
     let result = match words.first().map(|word| word.as_str()) {
         Some("bioreactor") => bioreactors(seeds(50), first, all.iter().any(|a| a == "--transcript")),
         Some("corrections") => corrections(seeds(10), first),
-        _ => Err("the first argument is bioreactor or corrections".into()),
+        Some("odebench") => missing_terms(seeds(3), first),
+        _ => Err("the first argument is bioreactor, corrections or odebench".into()),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -120,7 +124,7 @@ struct Tally {
 }
 
 impl Tally {
-    fn add(&mut self, said: &Said) {
+    fn add(&mut self, said: &correction::Said) {
         self.cases += 1;
         self.in_class += usize::from(said.is_in_class);
         self.listed += usize::from(said.is_listed);
@@ -158,7 +162,7 @@ fn corrections(seeds: u64, first: u64) -> Result<(), StudyError> {
             let said = each(seeds, |k| {
                 search.said(noise, first + k, number as u64).ok_or("no curve")
             })?;
-            let median = |count: &dyn Fn(&Said) -> usize| {
+            let median = |count: &dyn Fn(&correction::Said) -> usize| {
                 let mut counts: Vec<usize> = said.iter().map(count).collect();
                 counts.sort_unstable();
                 counts[counts.len() / 2]
@@ -178,5 +182,114 @@ fn corrections(seeds: u64, first: u64) -> Result<(), StudyError> {
         }
         println!("| {:.0} % | **all** | {} | | |", 100.0 * noise, all.cells());
     }
+    Ok(())
+}
+
+/// What the search says of one system with a term removed, and of the whole one.
+struct Judged {
+    removed: usize,
+    said: judgement::Said,
+    said_of_whole: judgement::Said,
+}
+
+/// Counts over systems and seeds.
+#[derive(Default)]
+struct Tally {
+    searches: usize,
+    undecidable: usize,
+    listed: usize,
+    in_class: usize,
+    best: usize,
+    placed: usize,
+    claimed: usize,
+    false_claims: usize,
+}
+
+impl Tally {
+    fn add(&mut self, judged: &Judged) {
+        let said = &judged.said;
+        self.searches += 1;
+        self.false_claims += usize::from(judged.said_of_whole.is_claimed);
+        if said.is_undecidable {
+            self.undecidable += 1;
+            return;
+        }
+        self.listed += usize::from(said.is_claimed && said.is_listed);
+        self.in_class += usize::from(said.is_claimed && said.is_in_class);
+        self.best += usize::from(said.is_claimed && said.is_best);
+        self.placed += usize::from(said.is_claimed && said.is_placed);
+        self.claimed += usize::from(said.is_claimed);
+    }
+
+    /// Returns the counts as cells: those after the number of undecidable searches are of the decidable ones.
+    fn cells(&self) -> String {
+        let decidable = self.searches - self.undecidable;
+        format!(
+            "{} | {}/{decidable} | {} | {} | {} | {} | {}/{}",
+            self.undecidable,
+            self.listed,
+            self.in_class,
+            self.best,
+            self.placed,
+            self.claimed,
+            self.false_claims,
+            self.searches
+        )
+    }
+}
+
+fn missing_terms(seeds: u64, first: u64) -> Result<(), StudyError> {
+    let systems: Vec<&OdeSystem> = odebench::systems().collect();
+    let libraries: Vec<TermLibrary> = (1..=4).map(TermLibrary::new).collect();
+    let count = systems.len() as u64;
+    let begin = cpu_s("self")?;
+    let judged = each(seeds * count, |k| {
+        let (system, seed) = (systems[(k % count) as usize], first + k / count);
+        let library = &libraries[system.dimension() - 1];
+        let removed = odebench::removed(system, seed).ok_or("a system has no term")?;
+        let said = |removed| odebench::judgement::searched(system, removed, seed, library);
+        Ok::<_, StudyError>(Judged {
+            removed,
+            said: said(Some(removed)).ok_or("a system has no answer")?,
+            said_of_whole: said(None).ok_or("a system has no answer")?,
+        })
+    })?;
+    let used = cpu_s("self")? - begin;
+    println!(
+        "| system | undecidable | in the class, of the decidable | unlisted too | as the best | right equation | claimed | false | removed, seed {first} | the best, seed {first} |\n|---|---|---|---|---|---|---|---|---|---|"
+    );
+    let mut of_dimension: [Tally; 4] = Default::default();
+    let mut all = Tally::default();
+    for (number, system) in systems.iter().enumerate() {
+        let mut of_system = Tally::default();
+        for judged in judged.iter().skip(number).step_by(systems.len()) {
+            for tally in [
+                &mut of_system,
+                &mut of_dimension[system.dimension() - 1],
+                &mut all,
+            ] {
+                tally.add(judged);
+            }
+        }
+        let Judged { removed, said, .. } = &judged[number];
+        let term = &system.terms[*removed];
+        println!(
+            "| {} | {} | x{}': {} | {} |",
+            system.number,
+            of_system.cells(),
+            term.equation,
+            term.text,
+            said.text
+        );
+    }
+    for (index, tally) in of_dimension.iter().enumerate() {
+        println!("| **{} states** | {} | | |", index + 1, tally.cells());
+    }
+    println!("| **all** | {} | | |", all.cells());
+    println!(
+        "{:.1} s of CPU time for each of {} searches",
+        used / (2.0 * all.searches as f64),
+        2 * all.searches
+    );
     Ok(())
 }

@@ -4,6 +4,7 @@ use std::sync::LazyLock;
 
 use benchmark::challenge::bioreactor;
 use benchmark::challenge::correction::{Libraries, Search};
+use benchmark::challenge::odebench::{self, judgement, term_formula::TermLibrary};
 use benchmark::challenge::scenario::SCENARIOS;
 use equation::FormulaLibrary;
 
@@ -48,4 +49,33 @@ fn corrections_of_textbook_laws_have_their_formulas() {
             "{name}: {said:?}"
         );
     }
+}
+
+#[test]
+fn a_term_that_is_removed_from_a_system_is_in_the_class() {
+    let libraries: Vec<TermLibrary> = (1..=3).map(TermLibrary::new).collect();
+    // One of each number of states that has a search below a second: logistic growth, a pendulum, and Lorenz's system.
+    for number in [6, 34, 54] {
+        let system = odebench::systems().find(|system| system.number == number);
+        let system = system.expect("the system");
+        let library = &libraries[system.dimension() - 1];
+        let removed = odebench::removed(system, 1);
+        let said = judgement::searched(system, removed, 1, library).expect("an answer");
+        assert!(
+            said.is_claimed && said.is_listed && !said.is_undecidable,
+            "{number}: {}",
+            said.text
+        );
+        let of_whole = judgement::searched(system, None, 1, library).expect("an answer");
+        assert!(!of_whole.is_claimed, "{number}: {}", of_whole.text);
+    }
+}
+
+#[test]
+fn a_term_that_the_data_hardly_show_is_undecidable_and_unclaimed() {
+    let system = odebench::systems()
+        .find(|system| system.number == 18)
+        .expect("the system");
+    let said = judgement::searched(system, Some(2), 1, &TermLibrary::new(1)).expect("an answer");
+    assert!(said.is_undecidable && !said.is_claimed, "{}", said.text);
 }

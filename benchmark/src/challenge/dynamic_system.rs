@@ -39,6 +39,18 @@ pub struct Experiment {
     pub values: Vec<f64>,
 }
 
+/// Returns the states a step later, by the classical Runge–Kutta method.
+pub fn stepped(rates: impl Fn(f64, &State) -> State, time: f64, state: &State, step: f64) -> State {
+    let moved = |by: &State, factor: f64| -> State { std::array::from_fn(|k| state[k] + factor * by[k]) };
+    let first = rates(time, state);
+    let second = rates(time + 0.5 * step, &moved(&first, 0.5 * step));
+    let third = rates(time + 0.5 * step, &moved(&second, 0.5 * step));
+    let fourth = rates(time + step, &moved(&third, step));
+    let mean: State =
+        std::array::from_fn(|k| (first[k] + 2.0 * second[k] + 2.0 * third[k] + fourth[k]) / 6.0);
+    moved(&mean, step)
+}
+
 impl DynamicSystem {
     /// Returns the coordinates of a fit of the parameters.
     pub fn coordinates(&self) -> impl Iterator<Item = Coordinate> {
@@ -64,21 +76,12 @@ impl DynamicSystem {
             let value = law(state[self.variable]);
             (self.rates)(time, state, parameters, &experiment.inputs, value)
         };
-        let moved = |state: &State, by: &State, factor: f64| -> State {
-            std::array::from_fn(|k| state[k] + factor * by[k])
-        };
         let (mut state, mut time) = (experiment.initial, 0.0);
         let mut predicted = Vec::with_capacity(experiment.times.len());
         for until in &experiment.times {
             let count = ((until - time) / self.step).round().max(0.0) as usize;
             for _ in 0..count {
-                let first = rates(time, &state);
-                let second = rates(time + 0.5 * self.step, &moved(&state, &first, 0.5 * self.step));
-                let third = rates(time + 0.5 * self.step, &moved(&state, &second, 0.5 * self.step));
-                let fourth = rates(time + self.step, &moved(&state, &third, self.step));
-                let mean: State =
-                    std::array::from_fn(|k| (first[k] + 2.0 * second[k] + 2.0 * third[k] + fourth[k]) / 6.0);
-                state = moved(&state, &mean, self.step);
+                state = stepped(&rates, time, &state, self.step);
                 time += self.step;
             }
             time = *until;

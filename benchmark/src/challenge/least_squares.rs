@@ -30,6 +30,23 @@ pub struct LeastSquares {
     pub hessian: DMatrix<f64>,
 }
 
+impl LeastSquares {
+    /// Returns the log evidence by Laplace's approximation, without the part of the measurements' errors that all models share; `None` if
+    /// the matrix is not positive definite.
+    ///
+    /// # Arguments
+    /// - `coordinates`: those of the fit; each has a finite sd.
+    pub fn log_evidence(&self, coordinates: &[Coordinate]) -> Option<f64> {
+        let root = self.hessian.clone().cholesky()?;
+        let volume: f64 = coordinates
+            .iter()
+            .enumerate()
+            .map(|(k, c)| libm::log(c.sd * root.l()[(k, k)]))
+            .sum();
+        Some(-self.objective - volume)
+    }
+}
+
 /// Residuals and their derivatives at a place.
 struct Slope {
     objective: f64,

@@ -7,6 +7,7 @@
 //! - [`truth`]: whether a formula is the hidden one. [`limiting_form`]: whether it is but the limit of a constant.
 //! - [`bioreactor`]: Monod's law in a fed-batch reactor, by experiments that are designed one after the other.
 //! - [`scenario`]: textbook laws with hidden corrections. [`correction`]: the search of their formulas.
+//! - [`odebench`]: a term that is removed from each of 63 systems of ordinary differential equations.
 
 pub mod bioreactor;
 pub mod correction;
@@ -15,6 +16,7 @@ pub mod dynamic_system;
 pub mod least_squares;
 pub mod limiting_form;
 pub mod located_law;
+pub mod odebench;
 pub mod parametric_law;
 pub mod scenario;
 pub mod truth;

@@ -159,10 +159,11 @@ impl FittedFormula {
         let problem = self.problem(curve);
         let fitted = self.constants(curve);
         let mut place = self.fit.place;
+        let written = FormulaText::new(curve, self, "y", "x").parameters;
         // A parameter is written for each constant, in their order.
-        let text = FormulaText::new(curve, self, "y", "x");
-        let written = text.parameters.iter().skip(1).zip(&parameters[1..]);
-        for (k, (parameter, value)) in written.enumerate() {
+        let is_constant =
+            |(parameter, _): &(&FormulaParameter, &f64)| parameter.kind != ParameterKind::Strength;
+        for (k, (parameter, value)) in written.iter().zip(parameters).filter(is_constant).enumerate() {
             let constant = match parameter.kind {
                 // The sign of its constant stands in the formula.
                 ParameterKind::Scale => libm::copysign(curve.scale / value, fitted[k]),
@@ -171,7 +172,9 @@ impl FittedFormula {
             };
             place[k + 1] = problem.coordinate(k, constant);
         }
-        place[0] = parameters[0] * problem.size(&place);
+        if self.link.has_strength() {
+            place[0] = parameters[0] * problem.size(&place);
+        }
         place
     }
 }
