@@ -81,7 +81,7 @@ impl DynamicSystem {
         for until in &experiment.times {
             let count = ((until - time) / self.step).round().max(0.0) as usize;
             for _ in 0..count {
-                state = stepped(&rates, time, &state, self.step);
+                state = stepped(rates, time, &state, self.step);
                 time += self.step;
             }
             time = *until;

@@ -20,6 +20,10 @@ pub struct Screened {
     pub equation: usize,
     pub formula: TermFormula,
     pub begin: Vec<f64>,
+    /// Log prior and approximate log evidence.
+    weight: f64,
+    /// What equal functions have in common.
+    key: Vec<i64>,
 }
 
 /// A factor with constants at which a fit may begin.
@@ -119,57 +123,70 @@ pub fn screened(
 ) -> Vec<Screened> {
     let remainders = remainders(form, states, model, place).unwrap_or_default();
     let begun = begun(library, states, support);
-    // The weight, the equation, the formula, the coordinates, and what equal functions have in common.
-    let mut all: Vec<(f64, usize, usize, Vec<f64>, Vec<i64>)> = Vec::new();
+    let mut all: Vec<Screened> = Vec::new();
     for (index, factors) in library.formulas.iter().enumerate() {
-        let log_prior = library.log_prior(library.formula(index).size());
-        let mut best: Vec<Option<(f64, Vec<f64>, Vec<i64>)>> = vec![None; remainders.len()];
-        let mut products = vec![(Vec::new(), vec![1.0; states.len()])];
-        for factor in factors {
-            let extended = products.iter().flat_map(|(place, values)| {
-                begun[*factor].iter().map(move |begun| {
-                    let coordinates = place.iter().chain(&begun.coordinates).copied().collect();
-                    let pairs = values.iter().zip(&begun.values);
-                    (coordinates, pairs.map(|(a, b)| a * b).collect())
-                })
-            });
-            products = extended.collect();
-        }
-        for (coordinates, values) in products {
-            let size = (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt();
+        let formula = library.formula(index);
+        let log_prior = library.log_prior(formula.size());
+        let mut best: Vec<Option<Screened>> = vec![None; remainders.len()];
+        for begun in products(&begun, factors, states.len()) {
+            let squares: f64 = begun.values.iter().map(|value| value * value).sum();
+            let size = (squares / begun.values.len() as f64).sqrt();
             if !(size > 0.0 && size.is_finite()) {
                 continue;
             }
-            let integrals = form.integrals(&values) / size;
+            let integrals = form.integrals(&begun.values) / size;
             for (equation, remainder) in remainders.iter().enumerate() {
                 let sd = support.strengths[equation];
                 let direction = &integrals * (sd / form.sd(equation));
                 let precision = 1.0 + direction.dot(&(&remainder.projection * &direction)).max(0.0);
                 let along = direction.dot(&remainder.rest);
                 let weight = 0.5 * along * along / precision - 0.5 * libm::log(precision) + log_prior;
-                if best[equation]
-                    .as_ref()
-                    .is_none_or(|(greatest, ..)| weight > *greatest)
-                {
-                    let begin = std::iter::once(sd * along / precision).chain(coordinates.iter().copied());
-                    best[equation] = Some((weight, begin.collect(), key(&values, size)));
+                if best[equation].as_ref().is_none_or(|best| weight > best.weight) {
+                    let size_begin = std::iter::once(sd * along / precision);
+                    best[equation] = Some(Screened {
+                        equation,
+                        formula: formula.clone(),
+                        begin: size_begin.chain(begun.coordinates.iter().copied()).collect(),
+                        weight,
+                        key: key(&begun.values, size),
+                    });
                 }
             }
         }
-        for (equation, best) in best.into_iter().enumerate() {
-            all.extend(best.map(|(weight, begin, key)| (weight, equation, index, begin, key)));
-        }
+        all.extend(best.into_iter().flatten());
     }
-    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    all.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     // Of equal functions, such as a positive state and its magnitude, the shortest is first.
     let mut keys = BTreeSet::new();
-    all.retain(|(_, equation, _, _, key)| keys.len() < kept && keys.insert((*equation, key.clone())));
-    let screened = all.into_iter().map(|(_, equation, index, begin, _)| Screened {
-        equation,
-        formula: library.formula(index),
-        begin,
-    });
-    screened.collect()
+    all.retain(|s| keys.len() < kept && keys.insert((s.equation, s.key.clone())));
+    all
+}
+
+/// Returns every place at which the fit of a product of factors may begin, with the values there.
+fn products(begun: &[Vec<Begun>], factors: &[usize], points: usize) -> Vec<Begun> {
+    let one = Begun {
+        coordinates: Vec::new(),
+        values: vec![1.0; points],
+    };
+    factors.iter().fold(vec![one], |products, factor| {
+        let extended = products.iter().flat_map(|product| {
+            begun[*factor].iter().map(move |begun| Begun {
+                coordinates: product
+                    .coordinates
+                    .iter()
+                    .chain(&begun.coordinates)
+                    .copied()
+                    .collect(),
+                values: product
+                    .values
+                    .iter()
+                    .zip(&begun.values)
+                    .map(|(a, b)| a * b)
+                    .collect(),
+            })
+        });
+        extended.collect()
+    })
 }
 
 /// Returns the values over their size to six digits, the first of them positive.
