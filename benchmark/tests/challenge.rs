@@ -53,9 +53,9 @@ fn corrections_of_textbook_laws_have_their_formulas() {
 
 #[test]
 fn a_term_that_is_removed_from_a_system_is_in_the_class() {
-    let libraries: Vec<TermLibrary> = (1..=3).map(TermLibrary::new).collect();
-    // One of each number of states that has a search below a second: logistic growth, a pendulum, and Lorenz's system.
-    for number in [6, 34, 54] {
+    let libraries: Vec<TermLibrary> = (1..=2).map(TermLibrary::new).collect();
+    // Logistic growth and a bead on a rotating hoop, whose searches are short.
+    for number in [6, 34] {
         let system = odebench::systems().find(|system| system.number == number);
         let system = system.expect("the system");
         let library = &libraries[system.dimension() - 1];

@@ -10,7 +10,9 @@
 //! Every formula is screened in the weak form, where only the remaining parameters are linearised; the best are fitted in the weak form,
 //! and the best of these through the equations of motion, where Laplace's approximation gives their evidence. A removed term that the data
 //! do not show, because other parameters stand in for it, counts as undecidable: the log Bayes factor of the whole system over the one
-//! without the term is then at most 3.
+//! without the term is then at most 3. Terms whose predictions differ by at most three nats from those of the most probable one are its
+//! class; a member counts as listed if it has a tenth of the best's probability. A part of the bench is the test
+//! `challenge::a_term_that_is_removed_from_a_system_is_in_the_class`.
 //!
 //! # Layout
 //! - [`system`]: a system as a sum of terms. [`one_state`], [`two_states`], [`more_states`]: the systems.
