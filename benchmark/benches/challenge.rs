@@ -256,7 +256,7 @@ fn missing_terms(seeds: u64, first: u64) -> Result<(), StudyError> {
     })?;
     let used = cpu_s("self")? - begin;
     println!(
-        "| system | undecidable | in the class, of the decidable | unlisted too | as the best | right equation | claimed | false | removed, seed {first} | the best, seed {first} |\n|---|---|---|---|---|---|---|---|---|---|"
+        "| system | undecidable | in the class, of the decidable | unlisted too | as the best | right equation | claimed | false | removed, seed {first} | the best (P and listed members of the leading class), seed {first} |\n|---|---|---|---|---|---|---|---|---|---|"
     );
     let mut of_dimension: [Tally; 4] = Default::default();
     let mut all = Tally::default();
@@ -274,12 +274,14 @@ fn missing_terms(seeds: u64, first: u64) -> Result<(), StudyError> {
         let Judged { removed, said, .. } = &judged[number];
         let term = &system.terms[*removed];
         println!(
-            "| {} | {} | x{}': {} | {} |",
+            "| {} | {} | x{}': {} | {} (P {:.2}, {} listed) |",
             system.number,
             of_system.cells(),
             term.equation,
             term.text,
-            said.text
+            said.text,
+            said.probability,
+            said.members
         );
     }
     for (index, tally) in of_dimension.iter().enumerate() {

@@ -27,11 +27,8 @@ pub struct Said {
     pub is_best: bool,
     /// Whether the most probable formula is in the equation of the removed term.
     pub is_placed: bool,
-    /// Whether any of the formulas that were fitted through the equations of motion is the removed term.
-    pub is_fitted: bool,
     /// Probability of the leading class among all terms.
     pub probability: f64,
-    pub log_odds: f64,
     /// The number of listed members of the leading class.
     pub members: usize,
     /// The most probable formula.
@@ -104,9 +101,7 @@ pub fn searched(
         is_in_class: answer.class.iter().any(|index| is_true[*index]),
         is_best: is_true[0],
         is_placed: removed.map(|index| system.terms[index].equation) == equation,
-        is_fitted: is_true.contains(&true),
         probability: answer.probability,
-        log_odds: answer.log_odds,
         members: answer.listed.len(),
         text: best.hypothesis.placed(&best.place)?.text(),
     })
