@@ -70,25 +70,33 @@ impl WeighedFit {
 
     /// Returns the formula as data behind the curve have it; `None` where it then has a pole in the range.
     ///
+    /// The evidence is turned into that with the priors of [`fits`] by the densities of both priors at the most probable values
+    /// (Laplace's approximation). Misfit and covariance remain those of the curve, at the new values. Checked by
+    /// `refitted::the_prior_of_a_formula_is_a_density`.
+    ///
     /// # Arguments
-    /// - `parameters`: their values in the order of [`FormulaText::parameters`](crate::FormulaText). `log_evidence`: stands in the place
-    ///   of the evidence of the curve, for all formulas alike.
+    /// - `parameters`: their most probable values in the order of [`FormulaText::parameters`](crate::FormulaText).
+    /// - `log_evidence`: of the data, over that of something that all formulas share. `log_prior`: log density of the priors with which
+    ///   it was computed, at these values.
     #[must_use]
-    pub fn refitted(&self, curve: &LocatedCurve, parameters: &[f64], log_evidence: f64) -> Option<Self> {
+    pub fn refitted(
+        &self,
+        curve: &LocatedCurve,
+        parameters: &[f64],
+        log_evidence: f64,
+        log_prior: f64,
+    ) -> Option<Self> {
         let place = self.formula.place_of(curve, parameters);
         let problem = self.formula.problem(curve);
-        if !problem.is_regular(&place) {
-            return None;
-        }
+        let fit = problem.at(place)?;
+        let log_evidence = log_evidence + self.formula.log_prior(curve, parameters, &place) - log_prior;
         Some(Self {
             weight: self.weight - self.formula.log_evidence + log_evidence,
             formula: FittedFormula {
                 log_evidence,
+                misfit: fit.misfit,
                 values: problem.on_grid(&place),
-                fit: Fit {
-                    place,
-                    ..self.formula.fit.clone()
-                },
+                fit,
                 ..self.formula.clone()
             },
         })

@@ -72,7 +72,7 @@ impl Problem<'_> {
         stretches
     }
 
-    fn strength_sd(&self) -> f64 {
+    pub(crate) fn strength_sd(&self) -> f64 {
         STRENGTH_SD * self.curve.size.max(f64::MIN_POSITIVE)
     }
 
@@ -175,6 +175,11 @@ impl Problem<'_> {
         if !self.is_regular(&place) {
             return None;
         }
+        self.described(place, &slope)
+    }
+
+    /// Describes a fit at a place; `None` where the curve does not determine it.
+    fn described(&self, place: [f64; PARAMETERS], slope: &Slope) -> Option<Fit> {
         let cholesky = slope.hessian.cholesky()?;
         let log_root: f64 = (0..PARAMETERS).map(|k| libm::log(cholesky.l()[(k, k)])).sum();
         let roles = self.program.roles.iter();
@@ -200,6 +205,12 @@ impl Problem<'_> {
             misfit: self.misfit(place[0], &shape),
             covariance,
         })
+    }
+
+    /// Describes the formula at a place that other data determined; `None` where it is undefined or has a pole within the range.
+    pub(crate) fn at(&self, place: [f64; PARAMETERS]) -> Option<Fit> {
+        let slope = self.is_regular(&place).then(|| self.slope(&place))??;
+        self.described(place, &slope)
     }
 
     /// Descends by damped Gauss–Newton steps (Levenberg 1944, Marquardt 1963).
@@ -357,6 +368,22 @@ impl Problem<'_> {
         let size = self.size(place);
         let grid = self.curve.grid.iter();
         grid.map(|x| self.law(place, size, *x)).collect()
+    }
+
+    /// Returns the log prior density of a constant: of a threshold it is uniform over the range, all over the scale of the variable.
+    ///
+    /// # Arguments
+    /// - `constant`: its index.
+    pub(crate) fn log_prior(&self, place: &[f64; PARAMETERS], constant: usize) -> f64 {
+        let coordinate = place[constant + 1];
+        let points = &self.curve.points;
+        let of_normal = -0.5 * (coordinate / CONSTANT_SD) * (coordinate / CONSTANT_SD)
+            - libm::log(CONSTANT_SD * libm::sqrt(2.0 * std::f64::consts::PI));
+        match self.program.roles[constant] {
+            ConstantRole::Coefficient => of_normal - libm::log(self.stretches(place)[constant]),
+            ConstantRole::Exponent => of_normal,
+            ConstantRole::Threshold => -libm::log(points[points.len() - 1] - points[0]),
+        }
     }
 
     /// Returns the coordinate of a constant.

@@ -8,6 +8,7 @@
 //! - `curve`, `fit`, `start`: the curve of a located law with its covariance, and the fit of one formula to it.
 //! - `answer`: the search, its probabilities and classes.
 //! - `limit`: what a formula says beyond the range, and the condition that splits two. `text`: a formula in the grammar of effect files.
+//!   `parameters`: its parameters as coordinates, and their prior.
 //!
 //! Everything is pure and deterministic: results do not depend on the number of threads.
 
@@ -19,6 +20,7 @@ mod fit;
 mod limit;
 mod link;
 mod op;
+mod parameters;
 mod program;
 mod start;
 mod text;

@@ -4,7 +4,6 @@ use std::fmt;
 
 use crate::answer::FittedFormula;
 use crate::curve::{Host, LocatedCurve};
-use crate::fit::PARAMETERS;
 use crate::link::Link;
 use crate::op::Op;
 use crate::tree::{CONSTANTS, Tree};
@@ -147,35 +146,6 @@ impl FormulaText {
             text.replace(&parameter.name, &number(parameter.value, digits))
         });
         text.replace("+ -", "- ").replace("- -", "+ ").replace("--", "")
-    }
-}
-
-impl FittedFormula {
-    /// Returns the coordinates of a fit by the values of its parameters. Checked by `text::parameters_determine_a_formula`.
-    ///
-    /// # Arguments
-    /// - `parameters`: in the order of [`FormulaText::parameters`].
-    pub(crate) fn place_of(&self, curve: &LocatedCurve, parameters: &[f64]) -> [f64; PARAMETERS] {
-        let problem = self.problem(curve);
-        let fitted = self.constants(curve);
-        let mut place = self.fit.place;
-        let written = FormulaText::new(curve, self, "y", "x").parameters;
-        // A parameter is written for each constant, in their order.
-        let is_constant =
-            |(parameter, _): &(&FormulaParameter, &f64)| parameter.kind != ParameterKind::Strength;
-        for (k, (parameter, value)) in written.iter().zip(parameters).filter(is_constant).enumerate() {
-            let constant = match parameter.kind {
-                // The sign of its constant stands in the formula.
-                ParameterKind::Scale => libm::copysign(curve.scale / value, fitted[k]),
-                ParameterKind::Shift | ParameterKind::Threshold => value / curve.scale,
-                ParameterKind::Strength | ParameterKind::Exponent | ParameterKind::Factor => *value,
-            };
-            place[k + 1] = problem.coordinate(k, constant);
-        }
-        if self.link.has_strength() {
-            place[0] = parameters[0] * problem.size(&place);
-        }
-        place
     }
 }
 

@@ -8,4 +8,5 @@ mod knots;
 mod library;
 mod limit;
 mod recovery;
+mod refitted;
 mod text;

@@ -43,6 +43,7 @@ fn a_formula_gives_the_law_that_was_fitted() {
 #[test]
 fn parameters_determine_a_formula() {
     for host in [Host::Addition, Host::Factor] {
+        let mut checked = 0;
         let curve = curve(host, 0.05, |x| 0.8 * x / (x + 0.3));
         let count = LIBRARY.formulas().count();
         let fits = (0..count).flat_map(|formula| fits(&curve, &LIBRARY, formula));
@@ -51,9 +52,10 @@ fn parameters_determine_a_formula() {
             // Another strength and other constants than the fitted ones, near them.
             let parameters = text.parameters.iter().map(|parameter| 1.02 * parameter.value);
             let parameters: Vec<f64> = parameters.collect();
-            let Some(refitted) = fit.refitted(&curve, &parameters, -1.0) else {
+            let Some(refitted) = fit.refitted(&curve, &parameters, -1.0, 0.0) else {
                 continue;
             };
+            checked += 1;
             let written = FormulaText::new(&curve, refitted.formula(), "q", "x");
             assert_eq!(written.formula, text.formula);
             for (parameter, expected) in written.parameters.iter().zip(parameters) {
@@ -64,6 +66,7 @@ fn parameters_determine_a_formula() {
                 );
             }
         }
+        assert!(checked > 150, "{checked}");
     }
 }
 

@@ -110,6 +110,7 @@ const OF_SERVICE = [
   "tests a law on conditions that are left out",
   "tries effects in the place of those of the model",
   "tests the leading explanations on conditions that are left out",
+  "fits formulas of a law outside the library",
   "chooses the runs that would tell",
   "is over",
 ];

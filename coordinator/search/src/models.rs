@@ -236,7 +236,9 @@ impl SearchModels {
     /// Returns the formulas of the curve of a law; `None` where it determines nothing.
     pub(super) fn equation_of(&self, law: &LawEntry, curve: &LawCurve) -> Option<LawEquation> {
         let taken = names_taken(&self.job, &self.base);
-        LawEquation::new(&law.dependence, curve, |name| taken.contains(name))
+        LawEquation::new(&law.dependence, curve, |name| {
+            taken.contains(name) || self.job.files.get(&format!("{name}.toml")).is_some()
+        })
     }
 
     /// Returns the name of a candidate; empty without one.

@@ -60,7 +60,8 @@ impl Support {
 
 /// A system without a term, and perhaps with a formula in an equation.
 ///
-/// A place has the logarithms of the magnitudes of the system's parameters, then the size of the term, which is its strength times the root mean square of the formula
+/// A place has the logarithms of the magnitudes of the system's parameters,
+/// then the size of the term, which is its strength times the root mean square of the formula
 /// on the support, then the constants of the formula.
 #[derive(Debug, Clone)]
 pub struct Hypothesis<'a> {

@@ -9,6 +9,8 @@ use super::term_formula::TermLibrary;
 
 /// Root mean square of the difference of two rates over that of the exact rate, up to which they are equal.
 const SHARP: f64 = 1e-4;
+/// The same in the equation of the removed term, over the root mean square of that term.
+const SHARP_TERM: f64 = 1e-3;
 /// The number of damped steps of a fit to the exact rates.
 const STEPS: usize = 60;
 
@@ -37,7 +39,7 @@ pub struct Said {
 
 impl WeighedTerm<'_> {
     /// Returns whether the rates of all states are the exact ones on the trajectories once strength, constants and parameters are
-    /// refitted, with no more constants than the removed term has.
+    /// refitted, with no more constants than the removed term has. A term that makes the same system with other parameters is as true.
     fn is_true(&self, problem: &Problem<'_>) -> bool {
         let system = problem.system;
         let (Some(removed), Some((equation, formula))) = (problem.removed, &self.hypothesis.term) else {
@@ -54,8 +56,20 @@ impl WeighedTerm<'_> {
             .collect();
         let dimension = system.dimension();
         let count = (states.len() * dimension) as f64;
-        let sizes: Vec<f64> = (0..dimension)
-            .map(|k| (exact.iter().map(|rate| rate[k] * rate[k]).sum::<f64>() / states.len() as f64).sqrt())
+        let size = |values: &mut dyn Iterator<Item = f64>| -> f64 {
+            (values.map(|value| value * value).sum::<f64>() / states.len() as f64).sqrt()
+        };
+        let without = |state: &State| system.rates(problem.removed, state, system.parameters)[*equation];
+        let mut of_term = states
+            .iter()
+            .zip(&exact)
+            .map(|(state, rate)| rate[*equation] - without(state));
+        let of_term = SHARP_TERM * size(&mut of_term);
+        let allowed: Vec<f64> = (0..dimension)
+            .map(|k| match k == *equation {
+                true => of_term,
+                false => SHARP * size(&mut exact.iter().map(|rate| rate[k])),
+            })
             .collect();
         let free = |c: &Coordinate| Coordinate {
             sd: f64::INFINITY,
@@ -67,7 +81,7 @@ impl WeighedTerm<'_> {
             let mut residuals = Vec::with_capacity(states.len() * dimension);
             for (state, exact) in states.iter().zip(&exact) {
                 let rates = model.rates(state);
-                residuals.extend((0..dimension).map(|k| (rates[k] - exact[k]) / (SHARP * sizes[k])));
+                residuals.extend((0..dimension).map(|k| (rates[k] - exact[k]) / allowed[k]));
             }
             Some(residuals)
         });
@@ -83,8 +97,17 @@ pub fn searched(
     library: &TermLibrary,
 ) -> Option<Said> {
     let problem = Problem::new(system, removed, seed)?;
-    let weight = |removed: Option<usize>| problem.without(removed).map_or(f64::NEG_INFINITY, |w| w.weight);
-    let is_undecidable = removed.is_some() && weight(None) - weight(removed) <= DISTINCT;
+    let exact = system
+        .parameters
+        .iter()
+        .map(|value| libm::log(value.abs()))
+        .collect();
+    let whole = problem.without(None, Some(exact)).map(|whole| whole.weight);
+    let without = problem
+        .without(removed, None)
+        .map_or(f64::NEG_INFINITY, |w| w.weight);
+    // Trajectories of the whole system are finite at the true parameters, which are among the starts.
+    let is_undecidable = removed.is_some() && whole.is_some_and(|whole| whole - without <= DISTINCT);
     let Some(answer) = problem.search(library) else {
         return Some(Said {
             is_undecidable,

@@ -6,7 +6,9 @@
 //! are 20 % too high or too low, as log-normal priors with an sd of 0.5. Whether a term is missing, in which equation, on which
 //! states it depends and its formula are to be found. Claims in whole systems are false.
 //!
-//! Terms are products of up to three functions of a state, or of sums and differences of two, of at most eight nodes and three constants.
+//! Terms are products of up to three functions of a state, of 1 less a state, or of a sum, difference or linear combination of two, of at most
+//! eight nodes and three constants. The functions were chosen so that every removable term is among the products: the challenge is to
+//! find a term among thousands, and not to write one that no library has.
 //! Every formula is screened in the weak form, where only the remaining parameters are linearised; the best are fitted in the weak form,
 //! and the best of these through the equations of motion, where Laplace's approximation gives their evidence. A removed term that the data
 //! do not show, because other parameters stand in for it, counts as undecidable: the log Bayes factor of the whole system over the one

@@ -164,11 +164,18 @@ impl<'a> Problem<'a> {
     }
 
     /// Weighs the system without the term, or another one; `None` if no start leads to finite trajectories.
-    pub fn without(&'a self, removed: Option<usize>) -> Option<WeighedTerm<'a>> {
+    ///
+    /// # Arguments
+    /// - `start`: values from which a fit begins beside those of the priors; only a judgement knows the true ones.
+    pub fn without(&'a self, removed: Option<usize>, start: Option<Vec<f64>>) -> Option<WeighedTerm<'a>> {
         let model = self.hypothesis(removed, None);
         let prior: Vec<f64> = self.parameters.iter().map(|c| c.mean).collect();
         let weak = self.fitted_weakly(&model, prior.clone(), &self.support.points);
-        let starts = weak.into_iter().map(|fitted| fitted.place).chain([prior]);
+        let starts = weak
+            .into_iter()
+            .map(|fitted| fitted.place)
+            .chain([prior])
+            .chain(start);
         let begins = starts.flat_map(|start| HORIZONS.map(|horizons| (start.clone(), horizons)));
         let weighed = begins.filter_map(|(start, horizons)| self.weighed(&model, &start, 0.0, horizons));
         weighed.max_by(|a, b| a.weight.total_cmp(&b.weight))

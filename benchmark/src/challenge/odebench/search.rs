@@ -90,7 +90,9 @@ impl<'a> Problem<'a> {
                 (0..dimension).for_each(|i| state[i] = predicted[i] * self.measured.sds[i]);
             }
         }
-        let without = self.without(self.removed).map_or(f64::NEG_INFINITY, |w| w.weight);
+        let without = self
+            .without(self.removed, None)
+            .map_or(f64::NEG_INFINITY, |w| w.weight);
         answer(terms, without)
     }
 }

@@ -14,13 +14,13 @@ const FUNCTIONS: usize = POINTS / KNOT_DISTANCE + 3;
 /// Integrals of test functions over both trajectories, in numbers that the noise of the measurements makes independent, each with sd 1.
 ///
 /// The integral of a test function p times a rate f on a trajectory x from 0 to T is p(T) x(T) - p(0) x(0) less the integral of p' x.
-/// The left side is computed on smooth states, whose errors are neglected, and the right side on the measurements. Integrals are those of
+/// The integral of the rate is computed on smooth states, whose errors are neglected, and what it equals on the measurements. Integrals are those of
 /// Simpson's rule.
 #[derive(Debug)]
 pub struct WeakForm {
     /// Functions by points: turns rates on a trajectory into whitened integrals.
     weights: DMatrix<f64>,
-    /// Whitened right sides of each state over its sd.
+    /// What the integrals equal by the measurements of each state over its sd, whitened.
     sides: Vec<DVector<f64>>,
     sds: State,
 }
@@ -51,8 +51,8 @@ impl WeakForm {
         };
         let knot = KNOT_DISTANCE as f64;
         let at = |j: usize, k: usize| spline(k as f64 / knot - (j as f64 - 1.0));
-        let right = DMatrix::from_fn(FUNCTIONS, POINTS + 1, |j, k| simpson(k) * at(j, k)[0]);
-        let left = DMatrix::from_fn(FUNCTIONS, POINTS + 1, |j, k| {
+        let of_rates = DMatrix::from_fn(FUNCTIONS, POINTS + 1, |j, k| simpson(k) * at(j, k)[0]);
+        let of_values = DMatrix::from_fn(FUNCTIONS, POINTS + 1, |j, k| {
             let [value, slope] = at(j, k);
             let end = match k {
                 0 => -value,
@@ -61,10 +61,10 @@ impl WeakForm {
             };
             end - simpson(k) * slope / (knot * measured.interval)
         });
-        let noisy = left.columns(1, POINTS);
+        let noisy = of_values.columns(1, POINTS);
         let root = (noisy * noisy.transpose()).cholesky()?;
         let whitened = |matrix: &DMatrix<f64>| root.l_dirty().solve_lower_triangular(matrix);
-        let (weights, left) = (whitened(&right)?, whitened(&left)?);
+        let (weights, of_values) = (whitened(&of_rates)?, whitened(&of_values)?);
         let mut points = vec![State::default(); 2 * (POINTS + 1)];
         let mut sides = Vec::with_capacity(dimension);
         for k in 0..dimension {
@@ -77,7 +77,7 @@ impl WeakForm {
                     .iter()
                     .enumerate()
                     .for_each(|(i, y)| points[first + i][k] = *y);
-                side.extend((&left * DVector::from_vec(values) / measured.sds[k]).iter());
+                side.extend((&of_values * DVector::from_vec(values) / measured.sds[k]).iter());
             }
             sides.push(DVector::from_vec(side));
         }

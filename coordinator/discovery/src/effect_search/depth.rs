@@ -270,7 +270,8 @@ pub(crate) const FORMS: Depth = Depth {
     ..FULL
 };
 
-/// Formulas of a located law. Their priors lie about the values that its curve has, so that a fit begins near its end.
+/// Formulas of a located law, with positive strengths. Half a standard deviation is the strength that the curve has, and the constants have
+/// the values of the curve in the middle of their priors, so that a fit begins near its end.
 pub(crate) const FORMULAS: Depth = Depth {
     screen: ScreenDepth {
         strengths: &[0.5],

@@ -40,6 +40,7 @@ export const SENTENCES = {
     "Jenseits der Ziehungen: die gestrichelten Kurven extrapolieren. {0}",
   "Cancel for good? Its stages so far stay, and it cannot go on.":
     "Endgültig abbrechen? Die bisherigen Stufen bleiben, und sie kann nicht fortgesetzt werden.",
+  "fits formulas of a law outside the library": "passt Formeln eines Gesetzes außerhalb der Bibliothek an",
   "Weighed with an assumed value, and therefore never named":
     "Mit einem angenommenen Wert gewogen, und darum nie benannt",
   "Cannot be judged, as the experiment is described": "Nicht zu beurteilen, wie das Experiment beschrieben ist",

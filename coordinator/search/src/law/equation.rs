@@ -2,8 +2,8 @@
 
 use discovery::{Candidate, FormulaFit, LawCurve};
 use equation::{
-    Answer, FormulaClass, FormulaLibrary, Host, Limit, LocatedCurve, WeighedFit, answer, fits, probabilities,
-    ranked, splitting,
+    Answer, FormulaClass, FormulaLibrary, FormulaText, Host, Limit, LocatedCurve, WeighedFit, answer, fits,
+    probabilities, ranked, splitting,
 };
 use formula::Effect;
 use job::free_parameters;
@@ -34,7 +34,21 @@ struct Offered {
     fit: WeighedFit,
     /// Its probability by the curve among all formulas.
     probability: f64,
+    /// The sign of its strength, which its candidate has in the formula, so that a fit begins with a positive strength.
+    sign: f64,
     entry: CandidateEntry,
+}
+
+impl Offered {
+    /// Returns the formula as it was fitted through the model, with the priors of the fits to the curve; `None` where it has a pole then.
+    fn refitted(&self, curve: &LocatedCurve, fit: &FormulaFit) -> Option<WeighedFit> {
+        let priors = self.entry.candidate.parameters.iter().zip(&fit.parameters);
+        let log_prior = priors.map(|(prior, value)| prior.log_density(*value)).sum();
+        let mut parameters = fit.parameters.clone();
+        *parameters.first_mut()? *= self.sign;
+        self.fit
+            .refitted(curve, &parameters, fit.log_bayes_factor, log_prior)
+    }
 }
 
 /// The formulas of the curve of a law.
@@ -55,7 +69,7 @@ impl LawEquation {
     /// Fits the formulas to the curve of a law; `None` where the curve determines nothing.
     ///
     /// # Arguments
-    /// - `is_taken`: whether an effect of the job has a name.
+    /// - `is_taken`: whether an effect or a file of the job has a name.
     pub(crate) fn new(
         dependence: &Dependence,
         curve: &LawCurve,
@@ -92,10 +106,18 @@ impl LawEquation {
         let leading = self.ranked.iter().zip(probabilities.iter().copied());
         let leading = leading.filter(|(_, probability)| *probability > MIN_SHARE * probabilities[0]);
         let offered = leading.zip(&self.names).filter_map(|((fit, probability), name)| {
+            let mut text = text(&self.dependence, &self.curve, fit.formula());
+            let strength = text.parameters.first_mut()?;
+            let sign = strength.value.signum();
+            if sign < 0.0 {
+                strength.value *= sign;
+                text.formula = text.formula.replace("strength", "(-strength)");
+            }
             Some(Offered {
                 fit: fit.clone(),
                 probability,
-                entry: self.entry(fit, name)?,
+                sign,
+                entry: self.entry(&text, name)?,
             })
         });
         self.offered = offered.collect();
@@ -108,9 +130,8 @@ impl LawEquation {
     }
 
     /// Makes the candidate of a formula; `None` if its file cannot be read.
-    fn entry(&self, fit: &WeighedFit, name: &str) -> Option<CandidateEntry> {
-        let text = text(&self.dependence, &self.curve, fit.formula());
-        let file = effect_file(&self.dependence, &text, name);
+    fn entry(&self, text: &FormulaText, name: &str) -> Option<CandidateEntry> {
+        let file = effect_file(&self.dependence, text, name);
         let effect = Effect::read(&file).ok()?;
         let free = free_parameters(&effect).ok()?;
         let candidate = CandidateEffect {
@@ -134,18 +155,13 @@ impl LawEquation {
     pub(crate) fn record(&self, of_model: &[FormulaFit]) -> Option<LawFormulas> {
         let refitted = of_model.iter().filter_map(|fit| {
             let offered = self.offered.get(fit.formula)?;
-            offered
-                .fit
-                .refitted(&self.curve, &fit.parameters, fit.log_bayes_factor)
+            Some((offered.probability, offered.refitted(&self.curve, fit)?))
         });
-        let refitted: Vec<WeighedFit> = refitted.collect();
+        let (shares, refitted): (Vec<f64>, Vec<WeighedFit>) = refitted.unzip();
         let through_model = refitted.len() as u64;
         let (share, answer) = match refitted.is_empty() {
             true => (1.0, answer(&self.curve, self.ranked.iter().cloned())),
-            false => {
-                let share = self.offered.iter().map(|offered| offered.probability);
-                (share.sum(), answer(&self.curve, refitted))
-            }
+            false => (shares.iter().sum(), answer(&self.curve, refitted)),
         };
         let mut recorded: Vec<&FormulaClass> = Vec::new();
         for class in answer.classes.iter().take(MAX_RECORDED) {
@@ -287,6 +303,44 @@ mod tests {
         );
         let sum: f64 = formulas.classes.iter().map(|class| class.probability).sum();
         assert!((sum + formulas.others - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn fits_through_the_model_decide() {
+        let (dependence, curve) = located("shear_v_t", 0.003, |v| -0.2 * (1.0 + v / 0.0005).ln());
+        let mut equation =
+            LawEquation::new(&dependence, &curve, |name| name == "shear_v_t_formula_2").unwrap();
+        let offered = equation.offer();
+        assert!(offered.len() > 5, "{}", offered.len());
+        assert!(
+            offered
+                .iter()
+                .all(|candidate| candidate.name != "shear_v_t_formula_2")
+        );
+        // The fits through the model find the values of the curve, and the third formula by far the best.
+        let values = |offered: &Offered| -> Vec<f64> {
+            let text = text(&dependence, &equation.curve, offered.fit.formula());
+            let mut values: Vec<f64> = text.parameters.iter().map(|parameter| parameter.value).collect();
+            values[0] = values[0].abs();
+            values
+        };
+        let fits = equation
+            .offered
+            .iter()
+            .enumerate()
+            .map(|(formula, offered)| FormulaFit {
+                formula,
+                log_bayes_factor: if formula == 2 { 100.0 } else { 0.0 },
+                parameters: values(offered),
+            });
+        let formulas = equation.record(&fits.collect::<Vec<_>>()).unwrap();
+        assert_eq!(formulas.through_model, offered.len() as u64);
+        let third = text(&dependence, &equation.curve, equation.offered[2].fit.formula());
+        assert_eq!(formulas.classes[0].members[0].formula, third.with_values(DIGITS));
+        let sum: f64 = formulas.classes.iter().map(|class| class.probability).sum();
+        assert!((sum + formulas.others - 1.0).abs() < 1e-9);
+        let share: f64 = equation.offered.iter().map(|offered| offered.probability).sum();
+        assert!((formulas.classes[0].probability - share).abs() < 1e-6 && share < 1.0);
     }
 
     #[test]
