@@ -4,16 +4,11 @@ use nalgebra::{Matrix4, Vector4};
 
 use crate::curve::LocatedCurve;
 use crate::link::Link;
+use crate::prior::{CONSTANT_SD, PARAMETERS, STRENGTH_SD};
 use crate::program::{ConstantRole, Program};
 use crate::start::starts;
 use crate::tree::CONSTANTS;
 
-/// The largest number of parameters that a formula has: its strength and its constants.
-pub(crate) const PARAMETERS: usize = 1 + CONSTANTS;
-/// Prior sd of the strength, over the root mean square of the curve, where the formula has a root mean square of 1.
-const STRENGTH_SD: f64 = 2.0;
-/// Prior sd of a constant's coordinate.
-pub(crate) const CONSTANT_SD: f64 = 1.5;
 /// Starts from which a fit begins.
 const BEGUN: usize = 3;
 const FIRST_STEPS: usize = 5;

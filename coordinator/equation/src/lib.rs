@@ -5,7 +5,7 @@
 //! - `op`, `tree`, `unit`, `enumeration`: the formulas, each family of curves once, with units.
 //! - `program`: a formula as operations, with derivatives.
 //! - `link`, `end`: how a formula makes the values of a curve, and the end of the variable at which it vanishes.
-//! - `curve`, `fit`, `start`: the curve of a located law with its covariance, and the fit of one formula to it.
+//! - `curve`, `fit`, `start`, `prior`: the curve of a located law with its covariance, and the fit of one formula to it.
 //! - `answer`: the search, its probabilities and classes.
 //! - `limit`: what a formula says beyond the range, and the condition that splits two. `text`: a formula in the grammar of effect files.
 //!   `parameters`: its parameters as coordinates, and their prior.
@@ -21,6 +21,7 @@ mod limit;
 mod link;
 mod op;
 mod parameters;
+mod prior;
 mod program;
 mod start;
 mod text;

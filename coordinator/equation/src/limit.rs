@@ -2,7 +2,7 @@
 
 use crate::answer::FittedFormula;
 use crate::curve::{Host, LocatedCurve};
-use crate::fit::PARAMETERS;
+use crate::prior::PARAMETERS;
 
 /// Beyond this many ranges a law is followed.
 const FAR: [f64; 3] = [1e3, 1e4, 1e5];

@@ -2,7 +2,7 @@
 
 use crate::answer::FittedFormula;
 use crate::curve::LocatedCurve;
-use crate::fit::PARAMETERS;
+use crate::prior::PARAMETERS;
 use crate::text::{FormulaText, ParameterKind};
 
 /// ln √(2π).

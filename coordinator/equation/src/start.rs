@@ -1,6 +1,6 @@
 //! Where fits of a formula start.
 
-use crate::fit::{CONSTANT_SD, PARAMETERS};
+use crate::prior::{CONSTANT_SD, PARAMETERS};
 use crate::program::ConstantRole;
 
 /// Starts that are tried, by the number of constants.
