@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use equation::{End, FittedFormula, FormulaLibrary, Link, LocatedCurve, Tree, fitted};
 
+use super::grouping::{classes, is_within};
 use super::limiting_form::is_limit;
 use super::scenario::Scenario;
 use super::truth::Truth;
@@ -20,8 +21,6 @@ const SCREENED: usize = 150;
 const LISTED: f64 = 0.1;
 /// Points at which formulas are compared.
 const GRID: usize = 61;
-/// Formulas of one class differ by at most this share of the curve's sd.
-const CLASS: f64 = 0.5;
 /// Probability of the classes that are reported together.
 const CREDIBLE: f64 = 0.95;
 /// The log Bayes factor of the truth over every shorter formula from which on measurements decide \[nats\].
@@ -196,21 +195,16 @@ impl<'a> Search<'a> {
 /// Groups formulas, the most probable first: a formula joins the first class whose best it resembles. Returns the probability of each class.
 fn classified(candidates: &mut [Candidate], sds: &[f64]) -> Vec<f64> {
     let best = candidates.first().map_or(0.0, |candidate| candidate.weight);
-    let (mut leaders, mut classes): (Vec<Vec<f64>>, Vec<f64>) = (Vec::new(), Vec::new());
-    for candidate in candidates {
-        let resembles = |leader: &Vec<f64>| {
-            let mut pairs = leader.iter().zip(&candidate.values).zip(sds);
-            pairs.all(|((a, b), sd)| (a - b).abs() <= CLASS * sd)
-        };
-        candidate.class = leaders.iter().position(resembles).unwrap_or(leaders.len());
-        if candidate.class == leaders.len() {
-            leaders.push(candidate.values.clone());
-            classes.push(0.0);
-        }
-        classes[candidate.class] += libm::exp(candidate.weight - best);
+    let joined = classes(candidates.len(), |a, b| {
+        is_within(sds, &candidates[a].values, &candidates[b].values)
+    });
+    let mut sums = vec![0.0; joined.iter().max().map_or(0, |last| last + 1)];
+    for (candidate, class) in candidates.iter_mut().zip(joined) {
+        candidate.class = class;
+        sums[class] += libm::exp(candidate.weight - best);
     }
-    let sum: f64 = classes.iter().sum();
-    classes.iter().map(|class| class / sum).collect()
+    let all: f64 = sums.iter().sum();
+    sums.iter().map(|sum| sum / all).collect()
 }
 
 /// Returns the fewest classes that have the probability of a credible set together.

@@ -6,6 +6,7 @@ use equation::{FormulaLibrary, FormulaText, Tree, search};
 use nalgebra::{DMatrix, DVector};
 
 use super::dynamic_system::{DynamicSystem, Experiment};
+use super::grouping::{classes, is_within};
 use super::least_squares::{Coordinate, fit};
 use super::located_law::LocatedLaw;
 use super::parametric_law::ParametricLaw;
@@ -16,8 +17,6 @@ const FITTED: usize = 60;
 const STEPS: usize = 15;
 /// The step of a derivative by a coordinate, over the coordinate's sd.
 const STEP: f64 = 0.01;
-/// Formulas of one class differ by at most this share of the curve's sd.
-const CLASS: f64 = 0.5;
 /// Points at which formulas are compared.
 const POINTS: usize = 41;
 
@@ -147,18 +146,11 @@ fn classified(law: &LocatedLaw, fitted: &mut [WeighedFormula]) {
     let share = |i: usize| i as f64 / (POINTS - 1) as f64;
     let points: Vec<f64> = (0..POINTS).map(|i| low + (high - low) * share(i)).collect();
     let sds: Vec<f64> = points.iter().map(|x| law.curve.sd(*x)).collect();
-    let mut bests: Vec<Vec<f64>> = Vec::new();
-    for formula in fitted.iter_mut() {
-        let values: Vec<f64> = points.iter().map(|x| formula.value(*x)).collect();
-        let resembles = |best: &Vec<f64>| {
-            let mut pairs = best.iter().zip(&values).zip(&sds);
-            pairs.all(|((a, b), sd)| (a - b).abs() <= CLASS * sd)
-        };
-        formula.class = bests.iter().position(resembles).unwrap_or(bests.len());
-        if formula.class == bests.len() {
-            bests.push(values);
-        }
-    }
+    let of_points = |formula: &WeighedFormula| points.iter().map(|x| formula.value(*x)).collect();
+    let values: Vec<Vec<f64>> = fitted.iter().map(of_points).collect();
+    let joined = classes(fitted.len(), |a, b| is_within(&sds, &values[a], &values[b]));
+    let pairs = fitted.iter_mut().zip(joined);
+    pairs.for_each(|(formula, class)| formula.class = class);
 }
 
 /// Returns the probability of each class.

@@ -4,7 +4,7 @@ use nalgebra::{Matrix4, Vector4};
 
 use crate::curve::LocatedCurve;
 use crate::link::Link;
-use crate::prior::{CONSTANT_SD, PARAMETERS, STRENGTH_SD};
+use crate::prior::{CONSTANT_SD, PARAMETERS, STRENGTH_SD, log_normal};
 use crate::program::{ConstantRole, Program};
 use crate::start::starts;
 use crate::tree::CONSTANTS;
@@ -372,8 +372,7 @@ impl Problem<'_> {
     pub(crate) fn log_prior(&self, place: &[f64; PARAMETERS], constant: usize) -> f64 {
         let coordinate = place[constant + 1];
         let points = &self.curve.points;
-        let of_normal = -0.5 * (coordinate / CONSTANT_SD) * (coordinate / CONSTANT_SD)
-            - libm::log(CONSTANT_SD * libm::sqrt(2.0 * std::f64::consts::PI));
+        let of_normal = log_normal(coordinate, CONSTANT_SD);
         match self.program.roles[constant] {
             ConstantRole::Coefficient => of_normal - libm::log(self.stretches(place)[constant]),
             ConstantRole::Exponent => of_normal,

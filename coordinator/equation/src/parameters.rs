@@ -2,16 +2,8 @@
 
 use crate::answer::FittedFormula;
 use crate::curve::LocatedCurve;
-use crate::prior::PARAMETERS;
+use crate::prior::{PARAMETERS, log_normal};
 use crate::text::{FormulaText, ParameterKind};
-
-/// ln √(2π).
-const LOG_ROOT_TWO_PI: f64 = 0.918_938_533_204_672_7;
-
-/// Returns ln N(x; 0, sd).
-fn log_normal(x: f64, sd: f64) -> f64 {
-    -0.5 * (x / sd) * (x / sd) - libm::log(sd) - LOG_ROOT_TWO_PI
-}
 
 impl FittedFormula {
     /// Returns the kinds of the parameters that belong to the constants, in their order.

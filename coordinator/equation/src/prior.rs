@@ -8,3 +8,10 @@ pub(crate) const PARAMETERS: usize = 1 + CONSTANTS;
 pub(crate) const STRENGTH_SD: f64 = 2.0;
 /// Prior sd of a constant's coordinate.
 pub(crate) const CONSTANT_SD: f64 = 1.5;
+/// ln √(2π).
+const LOG_ROOT_TWO_PI: f64 = 0.918_938_533_204_672_7;
+
+/// Returns ln N(x; 0, sd).
+pub(crate) fn log_normal(x: f64, sd: f64) -> f64 {
+    -0.5 * (x / sd) * (x / sd) - libm::log(sd) - LOG_ROOT_TWO_PI
+}

@@ -1,5 +1,6 @@
 //! What the search of a term says: formulas by their weight, and the class of the most probable ones.
 
+use super::super::grouping::classes;
 use super::hypothesis::Hypothesis;
 
 /// Predictions whose distance makes a log likelihood ratio of at most this are of one class; a term is claimed above it.
@@ -38,20 +39,18 @@ pub struct Answer<'a> {
 pub fn answer(terms: Vec<WeighedTerm<'_>>, without: f64) -> Option<Answer<'_>> {
     let best = terms.first()?.weight;
     let relative: Vec<f64> = terms.iter().map(|term| libm::exp(term.weight - best)).collect();
-    let mut classes: Vec<Vec<usize>> = Vec::new();
-    for (index, term) in terms.iter().enumerate() {
-        let resembles = |class: &&mut Vec<usize>| {
-            let pairs = terms[class[0]].predictions.iter().zip(&term.predictions);
-            0.5 * pairs.map(|(a, b)| (a - b) * (a - b)).sum::<f64>() <= DISTINCT
-        };
-        match classes.iter_mut().find(resembles) {
-            Some(class) => class.push(index),
-            None => classes.push(vec![index]),
-        }
+    let joined = classes(terms.len(), |a, b| {
+        let pairs = terms[a].predictions.iter().zip(&terms[b].predictions);
+        0.5 * pairs.map(|(a, b)| (a - b) * (a - b)).sum::<f64>() <= DISTINCT
+    });
+    let mut members = vec![Vec::new(); terms.len()];
+    for (index, class) in joined.into_iter().enumerate() {
+        members[class].push(index);
     }
+    members.retain(|class| !class.is_empty());
     let sum = |class: &[usize]| class.iter().map(|index| relative[*index]).sum::<f64>();
     let all: f64 = relative.iter().sum();
-    let leading = classes.into_iter().max_by(|a, b| sum(a).total_cmp(&sum(b)))?;
+    let leading = members.into_iter().max_by(|a, b| sum(a).total_cmp(&sum(b)))?;
     let probability = sum(&leading) / all;
     let least = LISTED * relative[leading[0]];
     Some(Answer {

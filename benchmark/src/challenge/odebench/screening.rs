@@ -156,7 +156,7 @@ pub fn screened(
         all.extend(best.into_iter().flatten());
     }
     all.sort_by(|a, b| b.weight.total_cmp(&a.weight));
-    // Of equal functions, such as a positive state and its magnitude, the shortest is first.
+    // The shortest of equal functions, such as a positive state and its magnitude, comes first.
     let mut keys = BTreeSet::new();
     all.retain(|s| keys.len() < kept && keys.insert((s.equation, s.key.clone())));
     all
