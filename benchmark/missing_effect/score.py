@@ -75,6 +75,13 @@ def is_place(truth, law):
     return law["acts_on"] == real["acts_on"] and (len(real["depends_on"]) > 1 or law["depends_on"] == real["depends_on"])
 
 
+def place_outcome(truth, law):
+    """`right` of a law at its place; `class` of one whose places contain it; else `wrong`."""
+    places = law.get("places") or [[law["acts_on"], law["depends_on"]]]
+    is_right = any(is_place(truth, {**law, "acts_on": acts_on, "depends_on": depends_on}) for acts_on, depends_on in places)
+    return "wrong" if not is_right else "right" if len(places) == 1 else "class"
+
+
 def laws_of(answer):
     """All laws that are claimed; an answer that has no list of them claims its law alone."""
     return answer.get("laws") or ([answer["law"]] if answer.get("law") else [])
@@ -93,7 +100,7 @@ def outcome(truth, answer):
         verdicts.append("class" if members & right else "alias" if members & other else "wrong")
         covered |= members & right
     for law in laws_of(answer):
-        verdicts.append("right" if is_place(truth, law) else "wrong")
+        verdicts.append(place_outcome(truth, law))
         covered |= {"law"} & right
     if answer.get("faults") and not truth["fault"]:
         verdicts.append("wrong")
@@ -155,7 +162,7 @@ def error(truth, predicted):
 def judged(truth, answer):
     lead = leading(answer)
     said = outcome(truth, answer)
-    is_false = said == "wrong" or said is None and any(not is_place(truth, law) for law in laws_of(answer))
+    is_false = said == "wrong" or said is None and any(place_outcome(truth, law) == "wrong" for law in laws_of(answer))
     case = {"number": truth["number"], "kind": truth["kind"], "outcome": said, "hides_nothing": hides_nothing(truth), "claims_falsely": is_false,
             "decidable": is_decidable(truth), "cpu_s": answer.get("cpu_s"), "before": error(truth, truth["base_holdout"]),
             "after": error(truth, answer.get("holdout")), "formula": None, "p": None}

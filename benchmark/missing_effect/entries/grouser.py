@@ -16,6 +16,8 @@ import tempfile
 from answer import main, rows
 
 HOSTS = {"pressure": ("p", 1), "shear": ("tau", 1), "drawbar_pull": ("drawbar_pull", 0), "torque": ("torque", 0), "sinkage": ("sinkage", 0)}
+# The place of a law is stated alone if it has more probability than this.
+PLACED = 0.9
 VERDICTS = {"nothing_detectable": "nothing", "named": "named", "class": "class", "not_in_library": "law", "undecided": "undecided"}
 ASKED = ("swapped_columns", "exchanged_wheels", "radius_or_diameter", "force_zero", "sinkage_zero", "rig_radius_m", "wheel_radius_m", "drawbar_pull_n", "torque_n_m",
          "sinkage_m", "drawbar_pull_sign", "torque_sign", "sinkage_sign")
@@ -40,7 +42,11 @@ def law_of(outside):
     texts += [form["formula"] for form in outside["forms"]]
     others = [member["formula"] for part in (outside.get("formulas") or {}).get("classes", []) for member in part["members"][1:]]
     acts_on = outside["acts_on"]
+    claimed = {"acts_on": acts_on, "depends_on": outside["depends_on"]}
+    told = [place for place in outside["places"] if place["probability"] > PLACED and claimed.items() <= place.items()]
+    places = told or outside["places"]
     return {"acts_on": acts_on, "depends_on": [outside["depends_on"]], "operation": "times" if HOSTS[acts_on][1] else "plus",
+            "places": [[place["acts_on"], [place["depends_on"]]] for place in places],
             "formulas": [formula(text, acts_on) for text in dict.fromkeys(texts)], "alike": [formula(text, acts_on) for text in others]}
 
 

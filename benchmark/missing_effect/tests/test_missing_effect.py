@@ -116,6 +116,8 @@ class Scorer(unittest.TestCase):
             ("wrong", truth(["moisture"]), answer("named", ["moisture"], faults=["force_zero"])),
             ("wrong", truth(kind="nothing"), answer("nothing", faults=["force_zero"])),
             ("wrong", truth(kind="scm", shortfall={"moisture": 0.0}, gain=0.0), answer("named", ["moisture"])),
+            ("class", truth(law=outside), answer("law", law=shear | {"places": [["shear", ["v_t"]], ["torque", ["slip"]]]})),
+            ("wrong", truth(law=outside), answer("law", law=shear | {"places": [["torque", ["slip"]], ["torque", ["sled_speed"]]]})),
             ("wrong", truth(law=outside), answer("law", law=shear) | {"laws": [shear, place("torque", "slip")]}),
             ("right", truth(law=outside), answer("law", law=shear) | {"laws": [shear, place("pressure", "slip")]}),
         ]

@@ -1,4 +1,4 @@
-//! Laws that describe a measured channel, beside laws of the physics that explain it nearly as well.
+//! Laws beside others that explain the data nearly as well: of another variable, and of the physics beside those of a measured channel.
 
 use crate::search::{DATA, LIBRARY, added, measured, task, w, x};
 use crate::setup::{conclude, marginal, normal};
@@ -39,16 +39,42 @@ fn answer(query: &Query, bend: f64) -> Vec<f64> {
 }
 
 /// Searches a step over x with a law that has it, and another law whose step bends over w.
-fn find(is_description: bool, bend: f64) -> Conclusion {
+///
+/// # Arguments
+/// - `quantities`: what both laws change; laws without a quantity contradict each other.
+fn find_with(quantities: &[&str], is_description: bool, bend: f64) -> Conclusion {
     let step = |x: f64| if x > 0.3 { STEP } else { 0.0 };
     let mut task = task(&measured(|x, _| 0.3 + 0.5 * x + step(x)));
     let threshold = marginal(Distribution::Uniform {
         lower: -1.0,
         upper: 1.0,
     });
+    for law in &mut task.laws {
+        law.curve.quantities = quantities.iter().map(ToString::to_string).collect();
+    }
     task.laws[0].is_description = is_description;
     task.laws[1].forms = vec![Candidate::new("bent step", vec![normal(1.0), threshold], vec![0])];
     conclude(task, false, |query| Some(answer(query, bend)))
+}
+
+fn find(is_description: bool, bend: f64) -> Conclusion {
+    find_with(&[], is_description, bend)
+}
+
+#[test]
+fn laws_of_one_quantity_that_fit_alike_are_possible_places() {
+    let places = |bend: f64| find_with(&["shear"], false, bend).outside.unwrap().places;
+    let alike = places(0.0);
+    let sum: f64 = alike.iter().map(|(_, probability)| probability).sum();
+    assert!(alike.len() == 2 && (sum - 1.0).abs() < 1e-9, "{alike:?}");
+    assert!(
+        alike
+            .iter()
+            .all(|(_, probability)| (probability - 0.5).abs() < 0.1),
+        "{alike:?}"
+    );
+    let told = places(0.1);
+    assert!(told.len() == 1 && told[0].0 == 0 && told[0].1 > 0.95, "{told:?}");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-use crate::law_formulas::LawFormulas;
+use crate::outside::Outside;
 use job::{EffectOnNodes, effect_name};
 use shared::channel::Channel;
 
@@ -320,70 +320,6 @@ impl NotTried {
     /// Returns whether runs would show the missing quantity.
     pub fn lacks_runs(&self) -> bool {
         self.needs.starts_with(Self::RUNS)
-    }
-}
-
-/// A law outside the library.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct Outside {
-    /// `pressure`, `shear`, `drawbar_pull`, `torque` or `sinkage`.
-    pub acts_on: String,
-    /// `z`, `v_n`, `v_t`, `j`, `position`, `slip`, `sled_speed`, `wheel_load` or `sinkage`.
-    pub depends_on: String,
-    /// The form of the dependence: `step`, `power`, ..., or `spline`.
-    pub form: String,
-    /// Log evidence over that of the searched model \[nats\].
-    pub log_bayes_factor: f64,
-    /// The effect file, ready to be added.
-    pub effect_file: String,
-    /// Pairs of the variable and the factor on the quantity, or for a channel the addition to it.
-    pub curve: Vec<[f64; 2]>,
-    /// Log predictive density of left-out levels over that of the searched model, and over that of the best of the library \[nats\].
-    pub left_out_nats: [f64; 2],
-    /// The curve and every form of the law that was fitted: the claimed one, then the others by falling log Bayes factor. Empty in
-    /// records of earlier versions.
-    #[serde(default)]
-    pub forms: Vec<FittedForm>,
-    /// The formulas that the curve may follow; null where the curve was not fitted beyond the effects of the law, and in records of
-    /// earlier versions.
-    #[serde(default)]
-    pub formulas: Option<LawFormulas>,
-}
-
-/// A form of a law outside the library, with its fitted values.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct FittedForm {
-    /// The form: `step`, `power`, ..., or `spline`.
-    pub form: String,
-    /// The quantity with the law, as a formula of effect files.
-    pub formula: String,
-    /// Log evidence over that of the searched model, on the scale of the law's \[nats\].
-    pub log_bayes_factor: f64,
-    /// Probability among the forms of this law, each of which has the same prior.
-    pub probability: f64,
-    /// Number of the class, from 1, in which these data cannot distinguish forms.
-    pub class: u32,
-}
-
-impl Outside {
-    /// Minimum difference of log Bayes factors by which the data prefer a form \[nats\].
-    const PREFERRED: f64 = 3.0;
-    /// Maximum number of forms that are named as alike.
-    const MAX_ALIKE: usize = 3;
-
-    /// Returns the leading forms if others fit as well as the best: `saturation (93.1), log (92.8) and power (91.0)`. `None` if one is
-    /// preferred.
-    #[must_use]
-    pub fn forms_alike(&self) -> Option<String> {
-        let best = self.forms.iter().map(|form| form.log_bayes_factor);
-        let best = best.fold(f64::NEG_INFINITY, f64::max);
-        let leading = self.forms.iter().take(Self::MAX_ALIKE);
-        let alike = leading.filter(|form| best - form.log_bayes_factor <= Self::PREFERRED);
-        let alike: Vec<String> = alike
-            .map(|form| format!("{} ({:.1})", form.form.replace('_', " "), form.log_bayes_factor))
-            .collect();
-        let (last, others) = alike.split_last()?;
-        (!others.is_empty()).then(|| format!("{} and {last}", others.join(", ")))
     }
 }
 

@@ -259,6 +259,7 @@ pub fn grown() -> Study {
     record.outside = Some(Outside {
         acts_on: "shear".into(),
         depends_on: "slip".into(),
+        places: Vec::new(),
         form: "step".into(),
         log_bayes_factor: 12.0,
         effect_file: "name = \"<script>\"\n".into(),

@@ -9,7 +9,7 @@ use discovery::{
 use job::PlainParameter;
 use record::{
     ChiSquare, Discovery, Extension, FittedForm, ImplausibleParameter, JudgedEffect, JudgedReplacement,
-    JudgedSet, LawFormulas, NONE, NOT_IN_LIBRARY, NextRun, Outside, RunInformation, Verdict,
+    JudgedSet, LawFormulas, LawPlace, NONE, NOT_IN_LIBRARY, NextRun, Outside, RunInformation, Verdict,
 };
 use shared::channel::Channel;
 
@@ -67,9 +67,12 @@ pub(super) fn discovery_record(
         .collect();
     let next_runs = conclusion.next_runs.iter().filter_map(|run| {
         let condition = models.design.get(run.run)?;
+        let is_law = |effects: &[usize]| matches!(effects, [k] if *k >= models.library.len());
+        let laws = run.separates.iter().filter(|effects| is_law(effects)).count();
         let words = |effects: &Vec<usize>| match effects.as_slice() {
             [] => NONE.to_owned(),
-            [k] if *k >= models.library.len() => NOT_IN_LIBRARY.to_owned(),
+            // Several laws differ in their names.
+            law if is_law(law) && laws == 1 => NOT_IN_LIBRARY.to_owned(),
             effects => names(effects).join(" + "),
         };
         Some(NextRun {
@@ -314,6 +317,16 @@ fn formulas(models: &SearchModels, outside: &OutsideLaw, law: &LawEntry) -> Opti
     }
 }
 
+/// Returns the place of a law with its probability.
+fn law_place(models: &SearchModels, (law, probability): (usize, f64)) -> Option<LawPlace> {
+    let dependence = &models.laws.get(law)?.dependence;
+    Some(LawPlace {
+        acts_on: dependence.acts_on.name().to_owned(),
+        depends_on: dependence.depends_on.name().to_owned(),
+        probability,
+    })
+}
+
 /// Returns the law with its curve, and its file as an extension.
 fn outside(models: &SearchModels, outside: &OutsideLaw) -> Option<(Outside, Extension)> {
     let law = models.laws.get(outside.law)?;
@@ -326,6 +339,11 @@ fn outside(models: &SearchModels, outside: &OutsideLaw) -> Option<(Outside, Exte
     let record = Outside {
         acts_on: law.dependence.acts_on.name().to_owned(),
         depends_on: law.dependence.depends_on.name().to_owned(),
+        places: outside
+            .places
+            .iter()
+            .filter_map(|place| law_place(models, *place))
+            .collect(),
         form: law.form_name(entry).to_owned(),
         log_bayes_factor: outside.log_bayes_factor,
         curve: curve::curve(text, &best, &law.dependence).unwrap_or_default(),

@@ -300,13 +300,16 @@ fn verdict(
             )
         }
         (SearchVerdict::NotInLibrary, Some(law)) => format!(
-            "not in the library: the missing law acts on {} and depends on {}, in the form of {} {} ({:.1} nats over {kind}; left-out levels are predicted better by {:.1} nats){}{}",
+            "not in the library: the missing law acts on {} and depends on {}, in the form of {} {} ({:.1} nats over {kind}; left-out levels are predicted better by {:.1} nats){}{}{}",
             law.acts_on.replace('_', " "),
             law.depends_on.replace('_', " "),
             if law.form.starts_with('i') { "an" } else { "a" },
             law.form.replace('_', " "),
             law.log_bayes_factor,
             law.left_out_nats[0],
+            law.places_alike().map_or(String::new(), |places| format!(
+                "; these data do not tell where it acts: {places}"
+            )),
             law.forms_alike()
                 .map_or(String::new(), |alike| format!("; the forms {alike} fit alike")),
             formulas(models, conclusion, law)

@@ -53,10 +53,12 @@ pub struct TrialScore {
     pub is_covered: bool,
     /// The number of classes in the 95 % set.
     pub set_size: usize,
-    /// Whether the quantity of the claimed law is right.
+    /// Whether the quantity of the claimed law, or of one of its places where the data do not tell them apart, is right.
     pub quantity: bool,
-    /// Whether the quantity and the variable of the claimed law are right.
+    /// Whether quantity and variable are, of the claimed law or of one of these places.
     pub dependence: bool,
+    /// Number of the places that are stated; 0 without a law.
+    pub places: usize,
     /// Whether the best combination is the truth, up to classes.
     pub is_exact: bool,
     pub held_out: HeldOut,
@@ -133,7 +135,7 @@ impl TrialScore {
         classes.extend(truth.is_nothing().then_some(TrialClass::Library(0)));
         let ranked = by_class(conclusion);
         let is_truth = |class: TrialClass| classes.contains(&class);
-        let (best, stated) = ranked[0];
+        let (best, probability) = ranked[0];
         let mut cumulative = 0.0;
         let credible = ranked.iter().take_while(|(_, p)| {
             let is_in = cumulative < 0.95;
@@ -150,8 +152,8 @@ impl TrialScore {
             SearchVerdict::NotInLibrary => Some(TrialClass::Outside),
             SearchVerdict::NothingDetectable | SearchVerdict::Undecided => None,
         };
-        let found = conclusion.outside.as_ref();
-        let found = found.map(|o| task.laws[o.law].curve.name.as_str());
+        let stated = comparison.stated_laws();
+        let accepts = |is_right: &dyn Fn(&str) -> bool| stated.iter().any(|law| is_right(law));
         let combination: Vec<_> = conclusion.combination.iter().map(|k| Some(*k)).collect();
         Self {
             kind,
@@ -168,12 +170,13 @@ impl TrialScore {
             is_alone: all.filter(|j| is_truth(TrialClass::Library(j.class))).count() == 1,
             is_named: first.is_some_and(|j| hidden == [j.candidate]),
             claim_is_right: claimed.is_some_and(is_truth)
-                && found.is_none_or(|found| truth.accepts_law(found)),
-            stated,
+                && (stated.is_empty() || accepts(&|law| truth.accepts_law(law))),
+            stated: probability,
             is_covered: credible.iter().any(|class| is_truth(*class)),
             set_size: credible.len(),
-            quantity: found.is_some_and(|found| truth.has_quantity(found)),
-            dependence: found.is_some_and(|found| truth.has_dependence(found)),
+            quantity: accepts(&|law| truth.has_quantity(law)),
+            dependence: accepts(&|law| truth.has_dependence(law)),
+            places: stated.len(),
             is_exact: truth.law.is_none() && is_same(conclusion, &hidden, &combination),
             held_out: facts.held_out,
             candidates: task.library.len(),

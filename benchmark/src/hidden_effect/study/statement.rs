@@ -145,16 +145,27 @@ impl Comparison<'_> {
         }
     }
 
+    /// Returns the names of the laws that the claim of a law states; none without such a claim.
+    pub(super) fn stated_laws(&self) -> Vec<&str> {
+        let task = self.task;
+        let claimed = self.conclusion.outside.as_ref();
+        let stated = claimed.map_or(Vec::new(), |outside| outside.stated());
+        stated
+            .into_iter()
+            .map(|law| task.laws[law].curve.name.as_str())
+            .collect()
+    }
+
     /// Returns the statement of a law outside the library, whose quantity and variable are stated only if it is claimed.
     fn law(&self, probability: f64) -> Statement {
-        let claimed = self.conclusion.outside.as_ref();
-        let claimed = claimed.map(|outside| self.task.laws[outside.law].curve.name.as_str());
+        let claimed = self.stated_laws();
         Statement {
-            text: format!("law {}", claimed.unwrap_or_default())
-                .trim_end()
-                .to_owned(),
+            text: format!("law {}", claimed.join("|")).trim_end().to_owned(),
             probability,
-            is_right: claimed.map_or(self.truth.law.is_some(), |found| self.truth.accepts_law(found)),
+            is_right: match claimed.is_empty() {
+                true => self.truth.law.is_some(),
+                false => claimed.iter().any(|law| self.truth.accepts_law(law)),
+            },
             is_something: true,
             is_alias: false,
         }

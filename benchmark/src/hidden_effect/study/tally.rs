@@ -129,6 +129,12 @@ impl Tally<'_> {
                 [0.95, 1.0],
             ),
             share("  and variable", &claimed, |x| x.dependence, [0.85, 0.95]),
+            share(
+                "  and alone",
+                &claimed,
+                |x| x.dependence && x.places == 1,
+                [0.50, 0.80],
+            ),
             Target::ratio("  held-out error after over before", &ratios, [0.35, 0.20]),
         ]
     }

@@ -11,6 +11,7 @@ use crate::stages::held_back::held_back;
 use crate::stages::hypotheses::{FittedReplacement, Hypotheses};
 use crate::stages::law_curve::LawCurve;
 use crate::stages::law_forms::{self, WeighedForm};
+use crate::stages::law_places::LawPlaces;
 use crate::stages::next_run::{InformativeRun, RunChoice};
 use crate::stages::noise_support::unsupported_noise;
 use crate::stages::prior_sensitivity::{AlternativePrior, alternative_priors};
@@ -18,7 +19,7 @@ use crate::stages::replacement::{self, Replacement};
 use crate::stages::scored_fit::ScoredFit;
 use crate::stages::shared_errors::{JudgedError, judged_errors};
 use crate::stages::state::SearchState;
-use crate::stages::verdict::SearchVerdict;
+use crate::stages::verdict::{NAMED, SearchVerdict};
 use crate::stages::weighing::{WeighedSet, Weighing};
 use crate::task::SearchTask;
 use statistics::likelihood::Likelihood;
@@ -60,6 +61,8 @@ pub struct OutsideLaw {
     pub candidate: usize,
     /// Log evidence over that of the base.
     pub log_bayes_factor: f64,
+    /// The most probable laws, this one among them, by falling probability among all laws: they tell where the law may act.
+    pub places: Vec<(usize, f64)>,
     /// The curve and every fitted form of the law: the claimed one, then the others by falling Bayes factor.
     pub forms: Vec<WeighedForm>,
     /// The knots of its curve with their covariance; `None` where the curve was not fitted beyond the effects of this explanation.
@@ -71,15 +74,33 @@ pub struct OutsideLaw {
 }
 
 impl OutsideLaw {
-    fn new(law: &ClaimableLaw, formulas: &[FormulaFit], likelihood: &Likelihood, misfit: f64) -> Self {
+    fn new(
+        law: &ClaimableLaw,
+        places: &LawPlaces,
+        formulas: &[FormulaFit],
+        likelihood: &Likelihood,
+        misfit: f64,
+    ) -> Self {
         Self {
             law: law.law,
             candidate: law.candidate,
             log_bayes_factor: law.log_bayes_factor,
+            places: places.leading(law.law),
             forms: law_forms::weighed(&law.forms, &law.fit, likelihood, misfit),
             curve: law.curve.as_ref().map(|curve| curve.with_misfit(misfit)),
             formulas: formulas.to_vec(),
             left_out_nats: law.left_out,
+        }
+    }
+}
+
+impl OutsideLaw {
+    /// Returns the laws that a claim states: this one, if it has more than 0.9 of the probability, otherwise all places.
+    pub fn stated(&self) -> Vec<usize> {
+        let is_told = |place: &&(usize, f64)| place.0 == self.law && place.1 > NAMED;
+        match self.places.iter().find(is_told) {
+            Some((law, _)) => vec![*law],
+            None => self.places.iter().map(|(law, _)| *law).collect(),
         }
     }
 }
@@ -290,6 +311,7 @@ impl Conclusion {
                 Objections::new(task, hypotheses, &weighing, explanation, supported)
             }
         };
+        let places = LawPlaces::new(task, hypotheses, &weighing);
         let is_withheld = objections.any();
         let verdict = match claimed {
             Some(replacement) => SearchVerdict::Named(replacement.candidate),
@@ -324,7 +346,7 @@ impl Conclusion {
             outside: law
                 .as_ref()
                 .filter(|_| verdict == SearchVerdict::NotInLibrary)
-                .map(|law| OutsideLaw::new(law, &hypotheses.formulas, likelihood, weighing.misfit)),
+                .map(|law| OutsideLaw::new(law, &places, &hypotheses.formulas, likelihood, weighing.misfit)),
             combination,
             replacements,
             gains: hypotheses.gains(),

@@ -19,7 +19,7 @@
 //! | 12 | formulas of the law that is claimed, which the caller makes of its curve | `law_formulas`, `formula_fit` |
 //! | 13 | next runs: the runs that discriminate best between the explanations | `last_stages`, `next_run`, `run_information` |
 //! | 13 | errors that runs share, beside the best explanation | `shared_errors` |
-//! | 13 | probabilities, verdict and conclusion | `weighing`, `replacement`, `prior_sensitivity`, `noise_support`, `held_back`, `claimable_law`, `law_rivals`, `law_curve`, `law_forms`, `verdict`, `conclusion` |
+//! | 13 | probabilities, verdict and conclusion | `weighing`, `replacement`, `prior_sensitivity`, `noise_support`, `held_back`, `claimable_law`, `law_places`, `law_curve`, `law_forms`, `verdict`, `conclusion` |
 //!
 //! # Layout
 //! - `ask_tell`: how a discovery is asked and told. `query`: a request to the model.
@@ -45,7 +45,7 @@ mod law_beside_effects;
 pub(crate) mod law_curve;
 pub(crate) mod law_forms;
 mod law_formulas;
-mod law_rivals;
+mod law_places;
 mod law_substitutes;
 mod laws;
 pub(crate) mod leaders;

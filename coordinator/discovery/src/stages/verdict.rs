@@ -3,7 +3,7 @@
 use crate::probability::DETECTED;
 use crate::stages::claimable_law::ClaimableLaw;
 use crate::stages::hypotheses::Hypotheses;
-use crate::stages::law_rivals::rival_probability;
+use crate::stages::law_places::LawPlaces;
 use crate::stages::weighing::Weighing;
 use crate::task::SearchTask;
 
@@ -61,7 +61,8 @@ impl SearchVerdict {
         let library = library.map_or(0.0, |best| best.log_bayes_factor);
         let is_detected = |log_bayes_factor: f64| log_bayes_factor / weighing.misfit > DETECTED;
         let law = law.filter(|law| is_detected(law.log_bayes_factor - library.max(0.0)));
-        let law = law.filter(|law| rival_probability(task, hypotheses, weighing, law.law) < 1.0 - NAMED);
+        let places = LawPlaces::new(task, hypotheses, weighing);
+        let law = law.filter(|law| places.rival_probability(task, law.law) < 1.0 - NAMED);
         let of_law = weighing
             .not_in_library
             .map_or(0.0, |(_, probability)| probability);

@@ -452,26 +452,42 @@ impl Weighing {
 }
 
 impl Weighing {
-    /// Returns the law alone and the sets that it leads, as far as they are open. A law alone that was not cross-validated is none.
+    /// Returns the laws alone and the sets that a law leads, as far as they are open. Laws alone of which none was cross-validated are
+    /// none; otherwise each that may act counts by its share, so that further runs tell where the law acts.
     fn open_laws<'a>(&self, hypotheses: &'a Hypotheses) -> impl Iterator<Item = OpenHypothesis<'a>> {
         let sets = self.sets.iter().filter(|set| set.probability > OPEN);
-        sets.filter_map(|set| {
-            let (effects, fit) = match &set.effects {
-                None => {
-                    let law = hypotheses.confirmed_law()?;
-                    (vec![law.candidate], &law.fit)
-                }
-                Some(effects) if self.leadership().leader(effects) == Some(Leader::Law) => {
-                    (effects.clone(), &hypotheses.combination(effects)?.fit)
-                }
-                Some(_) => return None,
-            };
-            Some(OpenHypothesis {
-                effects,
-                probability: set.probability,
-                fit,
-            })
+        let open = sets.flat_map(|set| match &set.effects {
+            None => self.laws_alone(hypotheses, set.probability),
+            Some(effects) if self.leadership().leader(effects) == Some(Leader::Law) => {
+                let combination = hypotheses.combination(effects);
+                let open = combination.map(|combination| OpenHypothesis {
+                    effects: effects.clone(),
+                    probability: set.probability,
+                    fit: &combination.fit,
+                });
+                open.into_iter().collect()
+            }
+            Some(_) => Vec::new(),
+        });
+        open.filter(|law| law.probability > OPEN)
+    }
+
+    /// Returns each law alone with its share of a probability, in proportion to its weight; none if no law was cross-validated.
+    fn laws_alone<'a>(&self, hypotheses: &'a Hypotheses, probability: f64) -> Vec<OpenHypothesis<'a>> {
+        let scan = hypotheses.laws.iter().filter(|scan| scan.confirmed.is_some());
+        let laws = scan.flat_map(|scan| {
+            // All laws have the same cost of choice among the possible ones.
+            let weights = scan.log_weights(1, self.misfit);
+            let of_all = log_sum_exp(weights.clone().map(|(_, weight)| weight));
+            let shares = weights.map(move |(_, weight)| libm::exp(weight - of_all));
+            scan.laws.iter().zip(shares)
+        });
+        laws.map(|(law, share)| OpenHypothesis {
+            effects: vec![law.candidate],
+            probability: probability * share,
+            fit: &law.fit,
         })
+        .collect()
     }
 }
 

@@ -67,7 +67,39 @@ export function LawChart({ law, name, add }) {
         ${add && html`<button class="main" type="button" onClick=${add}>Add this law</button>`}
       </div>
     </div>
+    <${Places} places=${law.places ?? []} />
     <${Forms} forms=${law.forms ?? []} />
+  `;
+}
+
+/** Where the law may act, if these data do not tell it; a record of an earlier version has no places. */
+function Places(/** @type {{ places: Schemas["LawPlace"][] }} */ { places }) {
+  if (places.length < 2) return null;
+  return html`
+    <h3>Where this law may act</h3>
+    <div class="scroll" tabindex="0" role="region" aria-label="Where this law may act">
+      <table>
+        <thead>
+          <tr>
+            <th scope="col">changed quantity</th>
+            <th scope="col">depends on</th>
+            <th scope="col" class="number">probability</th>
+          </tr>
+        </thead>
+        <tbody>
+          ${places.map(
+            (place) => html`
+              <tr key=${`${place.acts_on} ${place.depends_on}`}>
+                <th scope="row">${words(place.acts_on)}</th>
+                <td>${words(place.depends_on)}</td>
+                <td class="number">${probability(place.probability)}</td>
+              </tr>
+            `,
+          )}
+        </tbody>
+      </table>
+    </div>
+    <p class="note">Probabilities are among all laws outside of the library. Those listed have 95 % together.</p>
   `;
 }
 

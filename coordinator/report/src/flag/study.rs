@@ -164,6 +164,7 @@ mod tests {
             record.outside = Some(record::Outside {
                 acts_on: "pressure".into(),
                 depends_on: depends_on.into(),
+                places: Vec::new(),
                 form: "power".into(),
                 log_bayes_factor: 30.0,
                 effect_file: String::new(),

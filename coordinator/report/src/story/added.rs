@@ -3,7 +3,7 @@
 use job::FreeParameter;
 use record::{Discovery, NOT_IN_LIBRARY, NextRun, addition_name, effect_of};
 
-use super::explanation::{Alternative, open, p, parts, run_words, summary};
+use super::explanation::{Alternative, law_places, open, p, parts, run_words, summary};
 use result::discovery::DiscoveryRound;
 use result::finished_calibration::FinishedCalibration;
 use result::study::Study;
@@ -183,13 +183,17 @@ fn judged(record: &Discovery, left: &[String]) -> Option<Alternative> {
         let outside = || record.effects.iter().find(|e| e.name == NOT_IN_LIBRARY);
         let replacement = record.named_replacement().map(|named| named.probability);
         let of_model = of_search.or_else(outside).map(|e| e.probability);
-        let probability = replacement.or(of_model).unwrap_or(0.0);
         // The name of an effect on one wheel includes the wheel. The name of a law outside the library is in its file.
         let name = if of_search.is_some() {
             name
         } else {
             effect_of(extension)
         };
+        let place = law_places(record, &name).into_iter().next();
+        let place = place
+            .filter(|_| of_search.is_none())
+            .map(|place| place.probability);
+        let probability = replacement.or(place).or(of_model).unwrap_or(0.0);
         Alternative {
             summary: summary(&name),
             name,
@@ -224,6 +228,7 @@ fn of_search(
     let rivals: Vec<Alternative> = open(&round.record)
         .into_iter()
         .map(Alternative::from)
+        .chain(law_places(&round.record, &judged.name))
         .filter(is_rival)
         .collect();
     let extended = [kept(study, round, before), effect_parts].concat();
@@ -353,6 +358,47 @@ mod tests {
         let printed = printed.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(printed.contains(RIVAL) && printed.contains(RUN), "{printed}");
         assert!(document::document(&study, &document::ReportPredictions::default()).contains(RIVAL));
+    }
+
+    #[test]
+    fn a_law_whose_place_these_data_do_not_tell_keeps_the_other_places_as_rivals() {
+        let mut study = fixture::of_a_class();
+        let record = &mut study.rounds[0].record;
+        record.verdict = record::Verdict::NotInLibrary;
+        // The law has the name of the effect that the study added.
+        record.extension = Some(record::Extension::File {
+            name: "slip_sinkage.toml".into(),
+            text: "name = \"slip_sinkage\"\n".into(),
+        });
+        record.effects.truncate(1);
+        record.effects[0].name = NOT_IN_LIBRARY.into();
+        record.effects[0].probability = 0.98;
+        let place = |depends_on: &str, probability| record::LawPlace {
+            acts_on: "pressure".into(),
+            depends_on: depends_on.into(),
+            probability,
+        };
+        record.outside = Some(record::Outside {
+            acts_on: "pressure".into(),
+            depends_on: "slip".into(),
+            places: vec![place("v_t", 0.6), place("slip", 0.4)],
+            form: "power".into(),
+            log_bayes_factor: 30.0,
+            effect_file: String::new(),
+            curve: Vec::new(),
+            left_out_nats: [20.0; 2],
+            forms: Vec::new(),
+            formulas: None,
+        });
+        let story = Story::current(&study);
+        let text = &story.missing.text;
+        for words in [
+            "slip_sinkage (P 0.39) is added",
+            "pressure_v_t (P 0.59) in place of slip_sinkage cannot be excluded",
+            RUN,
+        ] {
+            assert!(text.contains(words), "{words} in {text}");
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Explanations of a search and their probabilities in words, and the parts of a model that an explanation stands for.
 
 use job::{EffectOnNodes, ModelSwitch, PlainParameter};
-use record::{Discovery, JudgedEffect, NONE, NOT_IN_LIBRARY, NextRun, Verdict, parts_of_effect};
+use record::{Discovery, JudgedEffect, LawPlace, NONE, NOT_IN_LIBRARY, NextRun, Verdict, parts_of_effect};
 
 use result::words::number;
 
@@ -95,6 +95,28 @@ pub(super) fn open(record: &Discovery) -> Vec<&JudgedEffect> {
         }
         Verdict::Named | Verdict::NotInLibrary | Verdict::NothingDetectable => Vec::new(),
     }
+}
+
+/// Lists the places of a claimed law that these data do not tell apart, each with its share of the probability of a law: first the law as
+/// it is claimed, by the name of its effect. Empty if one place is claimed.
+pub(super) fn law_places(record: &Discovery, claimed: &str) -> Vec<Alternative> {
+    let Some(law) = &record.outside else {
+        return Vec::new();
+    };
+    let of_law = record.effects.iter().find(|e| e.name == NOT_IN_LIBRARY);
+    let of_law = of_law.map_or(0.0, |e| e.probability);
+    let place = |place: &LawPlace| Alternative {
+        name: match place.is_of(law) {
+            true => claimed.to_owned(),
+            false => format!("{}_{}", place.acts_on, place.depends_on),
+        },
+        probability: of_law * place.probability,
+        summary: None,
+    };
+    let mut places: Vec<Alternative> = law.open_places().iter().map(place).collect();
+    // The sort is stable.
+    places.sort_by_key(|place| place.name != claimed);
+    places
 }
 
 /// Describes a run: `slip 0.60 under 80.0 N at 20.0 mm/s`.

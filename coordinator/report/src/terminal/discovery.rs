@@ -248,6 +248,7 @@ mod tests {
         record.outside = Some(Outside {
             acts_on: "shear".into(),
             depends_on: "j".into(),
+            places: Vec::new(),
             form: "log".into(),
             log_bayes_factor: 12.0,
             effect_file: "name = \"shear_j_log\"\n".into(),

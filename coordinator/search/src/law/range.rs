@@ -11,8 +11,11 @@ use shared::experiment::{Experiment, RunUse, TestRun, rim_speed_m_s};
 
 /// Knots of a curve.
 pub(crate) const KNOTS: usize = 5;
-/// Minimum number of levels of a designed variable; two show a change, but not its form.
-const LEVELS: usize = 3;
+/// Minimum number of levels of slip: with two it is confounded with what else differs between them.
+const SLIP_LEVELS: usize = 3;
+/// Minimum number of levels of wheel load and sled speed: two show a change, though not its form. Without them a variable of the contact
+/// that goes with load or speed would take the credit.
+const LEVELS: usize = 2;
 /// Speeds that differ by less than this share are one level `[1]`: the accuracy of rigs is some per cent.
 const SPEED_TOLERANCE: f64 = 0.1;
 /// Loads whose neighbours differ by less than this share are one level `[1]`: measured loads scatter.
@@ -166,7 +169,7 @@ pub(super) fn rounded(x: f64, digits: usize) -> f64 {
 
 /// Returns the variables along which the fitted runs can show a dependence, with their ranges.
 ///
-/// Slip, sled speed and wheel load need three designed levels. The sled speed needs them of sled and rim: where a rig keeps one of
+/// Slip needs three designed levels, sled speed and wheel load two. The sled speed needs them of sled and rim: where a rig keeps one of
 /// these speeds and sets the slip by the other, slip and speed are confounded. Variables within the contact are always used.
 /// Checked by `tests::levels_decide_what_can_be_used`.
 pub(crate) fn ranges(experiment: &Experiment) -> BTreeMap<DependsOn, VariableRange> {
@@ -193,16 +196,20 @@ pub(crate) fn ranges(experiment: &Experiment) -> BTreeMap<DependsOn, VariableRan
     let slid = greatest(turning().map(|run| slide(run) / rim(run) * radius(run) * angle(run)));
     let from_reach = |max: f64| ((REACH * max).max(MIN_LENGTH), max.max(MIN_LENGTH / REACH));
     let of_designed = |variable: DependsOn| -> Option<(f64, f64)> {
-        let (values, levels) = match variable {
-            DependsOn::Slip => (all(|r| r.slip), slip_levels(all(|r| r.slip))),
-            DependsOn::WheelLoad => (all(|r| r.wheel_load_n), load_levels(all(|r| r.wheel_load_n))),
+        let (values, levels, needed) = match variable {
+            DependsOn::Slip => (all(|r| r.slip), slip_levels(all(|r| r.slip)), SLIP_LEVELS),
+            DependsOn::WheelLoad => (
+                all(|r| r.wheel_load_n),
+                load_levels(all(|r| r.wheel_load_n)),
+                LEVELS,
+            ),
             _ => {
                 let sled = all(|r| r.sled_speed_m_s);
                 let rims = turning().map(|run| rim(run)).collect();
-                (sled.clone(), speed_levels(sled).min(speed_levels(rims)))
+                (sled.clone(), speed_levels(sled).min(speed_levels(rims)), LEVELS)
             }
         };
-        (levels >= LEVELS).then(|| (least(values.iter().copied()), greatest(values.into_iter())))
+        (levels >= needed).then(|| (least(values.iter().copied()), greatest(values.into_iter())))
     };
     let ends = |variable: DependsOn| match variable {
         DependsOn::Z => Some((0.0, 1.2 * deepest)),
@@ -292,7 +299,10 @@ mod tests {
         use DependsOn::{J, Position, Sinkage, SledSpeed, Slip, Vn, Vt, WheelLoad, Z};
         // four slips, two loads, three speeds of the rim
         let designed: Vec<DependsOn> = of("tests/data/shear-mobilisation").into_keys().collect();
-        assert_eq!(designed, [Z, Vn, Vt, J, Position, Slip, SledSpeed, Sinkage]);
+        assert_eq!(
+            designed,
+            [Z, Vn, Vt, J, Position, Slip, SledSpeed, WheelLoad, Sinkage]
+        );
         // five slips by five speeds of the rim, one speed of the sled, one load that scatters by 13 %
         let sand: Vec<DependsOn> = of("examples/cmu-sand").into_keys().collect();
         assert_eq!(sand, [Z, Vn, Vt, J, Position, Slip, Sinkage]);
