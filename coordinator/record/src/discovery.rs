@@ -73,6 +73,10 @@ pub struct Discovery {
     /// The channels that the best explanation leaves unexplained, the worst first.
     #[serde(default)]
     pub remaining: Vec<RemainingMisfit>,
+    /// The leading candidate of a search that names none, if the most probable sets with it gain more than 3 nats and nothing speaks
+    /// against their parameters. It may serve predictions. Null in records of earlier versions.
+    #[serde(default)]
+    pub leading: Option<Extension>,
     /// The law outside the library, if that is the verdict.
     pub outside: Option<Outside>,
     /// Effects that are not detectable with these data at their usual strength.

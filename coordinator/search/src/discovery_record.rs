@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use discovery::{
-    Conclusion, EvidenceMethod, FitChiSquare, NAMED, OutsideLaw, RankedEffect, Replacement, SearchVerdict,
-    WeighedForm, WeighedSet,
+    Conclusion, DETECTED, EvidenceMethod, FitChiSquare, NAMED, OutsideLaw, RankedEffect, Replacement,
+    SearchVerdict, WeighedForm, WeighedSet,
 };
 use job::PlainParameter;
 use record::{
@@ -106,6 +106,7 @@ pub(super) fn discovery_record(
                 Some(ImplausibleParameter { name, prior_sds })
             }),
         unsupported_noise: unsupported_noise(models, conclusion),
+        leading: leading(models, conclusion).filter(|_| extension.is_none()),
         extension,
         // Evidences are unreliable where a prior is contradicted.
         drop: conclusion
@@ -138,6 +139,35 @@ pub(super) fn discovery_record(
     };
     record.text = sentence(models, conclusion, &record);
     record
+}
+
+/// Returns the most probable effect of an open verdict, if a set with it is a detection and no parameter contradicts its prior.
+fn leading(models: &SearchModels, conclusion: &Conclusion) -> Option<Extension> {
+    let is_open = matches!(
+        conclusion.verdict,
+        SearchVerdict::Undecided | SearchVerdict::Class(_)
+    );
+    let has_objection = conclusion.implausible.or(conclusion.held_back).is_some();
+    if !is_open || has_objection || !conclusion.unsupported_noise.is_empty() {
+        return None;
+    }
+    let effects = conclusion
+        .ranking
+        .effects
+        .iter()
+        .filter(|e| e.candidate.is_some());
+    let first = effects.reduce(|best, e| if e.probability > best.probability { e } else { best })?;
+    let candidate = first.candidate?;
+    let is_detected = |set: &WeighedSet| {
+        let has = set
+            .effects
+            .as_ref()
+            .is_some_and(|effects| effects.contains(&candidate));
+        has && set.log_bayes_factor / conclusion.misfit > DETECTED
+    };
+    let entry = models.entry(candidate).filter(|entry| entry.not_tried.is_none());
+    let entry = entry.filter(|_| conclusion.sets.iter().any(is_detected))?;
+    Some(entry.effect.extension.clone())
 }
 
 /// Lists the effects in the place of effects of the base.

@@ -330,7 +330,7 @@ async fn expected_members(study: i64, service: &Service) -> anyhow::Result<usize
     let to_come = match spec.discovery.apply {
         Apply::Off => 0,
         Apply::Ask => 1,
-        Apply::Auto => 3,
+        Apply::Auto | Apply::Leading => 3,
     };
     Ok(rows.len().max(spec.models + to_come))
 }

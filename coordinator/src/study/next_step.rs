@@ -40,7 +40,7 @@ pub fn most_probable(log_evidences: impl Iterator<Item = Option<f64>>) -> Option
 ///
 /// A failed or cancelled member ends it. With `ask` the last calibration of the ledger is searched, and the user decides. With `auto` it is
 /// extended by the effect that its search names, up to the allowed number of effects beyond those of the first member; an effect that was
-/// dropped is neither added nor dropped again. Where a search names an effect in the place of one that the study added, that one is dropped
+/// dropped is neither added nor dropped again. With `leading` the study adds the leading candidate of a search that names none, too. Where a search names an effect in the place of one that the study added, that one is dropped
 /// and the other is then added, without a search between them. If the job compares several models, the study continues with the model of largest evidence.
 ///
 /// # Arguments
@@ -69,7 +69,7 @@ pub fn next_step(
         .rfind(|row| findings.ledger.contains(&row.id))?;
     let Some(search) = lineage.search_of(last.id) else {
         let replacing = replacing(lineage, findings, last)
-            .filter(|extension| settings.apply == Apply::Auto && !is_taken_back(withdrawn, extension));
+            .filter(|extension| settings.apply != Apply::Ask && !is_taken_back(withdrawn, extension));
         return Some(match replacing {
             Some(extension) => StudyStep::Extend(last.id, extension),
             None => StudyStep::Search(last.id),
@@ -83,7 +83,11 @@ pub fn next_step(
     let was_dropped =
         |effect: &str| lineage.has_dropped(effect) || Lineage::new(withdrawn).has_dropped(effect);
     let can_go = |effect: &&String| lineage.has_added(last.id, effect) && !was_dropped(effect);
-    if let Some(extension) = &record.extension {
+    let leading = record
+        .leading
+        .as_ref()
+        .filter(|_| settings.apply == Apply::Leading);
+    if let Some(extension) = record.extension.as_ref().or(leading) {
         let parts = parts_of(extension);
         let is_refused = parts.iter().any(|part| was_dropped(part)) || is_taken_back(withdrawn, extension);
         let is_there = parts.iter().all(|part| lineage.has_added(last.id, part));
@@ -305,6 +309,33 @@ mod tests {
             None,
             "and is not dropped twice"
         );
+    }
+
+    #[test]
+    fn a_study_for_predictions_adds_the_leading_candidate_of_an_open_search() {
+        let open = |leading: &str| Discovery {
+            leading: Some(Extension::Effect(leading.to_owned())),
+            ..names(None, &[])
+        };
+        let mut rows = vec![base(1), search(2, 1)];
+        let mut records = vec![(2, open("a"))];
+        assert_eq!(step(Apply::Auto, &rows, &records), None);
+        assert_eq!(step(Apply::Ask, &rows, &records), None);
+        assert_eq!(step(Apply::Leading, &rows, &records), extend(1, "a"));
+        rows.extend([added(3, 1, "a"), search(4, 3)]);
+        // What a search names comes before what leads, and what the model has is not added again.
+        records.push((
+            4,
+            Discovery {
+                extension: Some(Extension::Effect("b".into())),
+                ..open("c")
+            },
+        ));
+        assert_eq!(step(Apply::Leading, &rows, &records), extend(3, "b"));
+        records[1] = (4, open("a"));
+        assert_eq!(step(Apply::Leading, &rows, &records), None);
+        records[1] = (4, names(None, &[]));
+        assert_eq!(step(Apply::Leading, &rows, &records), None);
     }
 
     #[test]

@@ -34,6 +34,8 @@ pub enum Apply {
     Ask,
     /// The study: it adds the effect that a search names, and searches again until none is named.
     Auto,
+    /// The study, for the sake of predictions: where its search names no effect, it adds the leading candidate, too.
+    Leading,
 }
 
 /// The search for a missing effect.
@@ -43,7 +45,7 @@ pub(crate) struct RawDiscovery {
     /// Who decides whether a missing effect is added.
     #[schemars(extend("enum" = Apply::VARIANTS))]
     apply: String,
-    /// Largest number of effects that `"auto"` adds.
+    /// Largest number of effects that `"auto"` and `"leading"` add.
     #[schemars(range(min = 1, max = MAX_EFFECTS))]
     max_effects: usize,
     /// Whether the other kind of model is a candidate too.
@@ -120,6 +122,8 @@ mod tests {
             parse("", "[discovery]\napply = \"auto\"\nmax_effects = 10"),
             settings(Apply::Auto, 10)
         );
+        let leading = parse("", "[discovery]\napply = \"leading\"");
+        assert_eq!(leading, settings(Apply::Leading, 3));
     }
 
     #[test]
