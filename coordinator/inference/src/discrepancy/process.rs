@@ -83,8 +83,10 @@ impl DiscrepancyProcess {
         Self::new(misfits, false)
     }
 
-    /// Returns the same process about a plane, whose coefficients the misfits determine, in place of 0. It predicts measurements without a
-    /// model: their differences from their mean are the misfits.
+    /// Returns the same process about a plane in place of 0: `m(x) = a + b'(x - 1/2)` with coordinates over their range, alike for all
+    /// groups, and independent normal coefficients of ten times the root mean square of the misfits, so that these determine it. It
+    /// predicts measurements without a model: their differences from their mean are the misfits. Checked by
+    /// `about_a_plane_a_line_goes_on_beyond_the_misfits`.
     #[must_use]
     pub fn about_a_plane(misfits: &[Misfit]) -> Option<Self> {
         Self::new(misfits, true)

@@ -25,7 +25,7 @@ pub struct CombinedRow {
     pub mean: Option<f64>,
     /// 5 % and 95 % quantile of a new measurement; `None` unless all models have an interval.
     pub interval: Option<[f64; 2]>,
-    /// Number of models in the average.
+    /// Number of models in the average, the measurements alone not counted.
     pub models: usize,
 }
 

@@ -53,7 +53,7 @@ pub struct PredictionRow {
     pub combined_q05: Option<f64>,
     /// 95 % quantile of a new measurement.
     pub combined_q95: Option<f64>,
-    /// Number of models in the average.
+    /// Number of models in the average, the measurements alone not counted.
     pub models: usize,
     /// Interpolation of the fitted measurements, without a model.
     pub interpolated: Option<f64>,
