@@ -63,10 +63,10 @@ impl CorrectedSummary {
     }
 }
 
-/// Errors of the weighted average of the corrected predictions of all models in the ledger.
+/// Errors of the weighted average of the corrected predictions of all models in the ledger and of the prediction by the measurements alone.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct CombinedSummary {
-    /// Maximum number of models in an average.
+    /// Maximum number of models in an average, the measurements alone not counted.
     pub models: usize,
     /// Errors of the fitted runs, each corrected from the other conditions.
     pub fit: Option<ErrorTable>,

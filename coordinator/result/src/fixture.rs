@@ -133,6 +133,29 @@ pub fn with_smooth_misfit() -> FinishedCalibration {
     calibration
 }
 
+/// Returns a calibration with twenty fitted runs, five slips at each of four slip angles, whose pull the model misses by what is given
+/// for the numbers of the slip and of the angle `[N]`.
+pub fn over_angles(misfit: impl Fn(usize, usize) -> f64) -> FinishedCalibration {
+    let mut runs =
+        "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,slip_angle_deg,drawbar_pull_n,sinkage_m,use\n"
+            .to_owned();
+    let mut predicted = Vec::new();
+    for (i, angle) in [0.0, 20.0, 40.0, 60.0].into_iter().enumerate() {
+        for (k, slip) in [-0.3, -0.1, 0.1, 0.3, 0.5].into_iter().enumerate() {
+            let pull = 10.0 * slip;
+            runs += &format!("s{k}a{i},a,sand,{slip},25,0.01,{angle},{pull},0.02,fit\n");
+            predicted.push(pull - misfit(k, i));
+        }
+    }
+    let mut calibration = build(&runs);
+    for prediction in &mut calibration.predictions {
+        if let Ok(observables) = &mut prediction.fit {
+            observables.drawbar_pull_n.clone_from(&predicted);
+        }
+    }
+    calibration
+}
+
 /// Returns the sample of a calibration, so that a test can change it.
 pub fn sampled(calibration: &mut FinishedCalibration) -> &mut SampledPosterior {
     match &mut calibration.outcome {

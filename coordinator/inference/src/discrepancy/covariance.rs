@@ -15,13 +15,20 @@ pub(super) struct Covariance {
     /// Correlation of two groups in the same condition.
     pub(super) between_groups: f64,
     pub(super) lengths: Vec<f64>,
+    /// Standard deviation of the value of a plane in the middle of the ranges and of each of its slopes; 0 without a plane.
+    pub(super) plane_sd: f64,
 }
 
 impl Covariance {
-    /// Returns the covariance of the smooth parts of two conditions.
+    /// Returns the covariance of the smooth parts of two conditions, the plane included, which all groups share.
     pub(super) fn between(&self, a: (&[f64], usize), b: (&[f64], usize)) -> f64 {
         let groups = if a.1 == b.1 { 1.0 } else { self.between_groups };
-        self.sd * self.sd * groups * matern(a.0, b.0, &self.lengths)
+        let smooth = self.sd * self.sd * groups * matern(a.0, b.0, &self.lengths);
+        if self.plane_sd == 0.0 {
+            return smooth;
+        }
+        let slopes: f64 = a.0.iter().zip(b.0).map(|(x, y)| (x - 0.5) * (y - 0.5)).sum();
+        smooth + self.plane_sd * self.plane_sd * (1.0 + slopes)
     }
 
     /// Returns the factor of the covariance of misfits, noise included; `None` where it is singular to rounding.

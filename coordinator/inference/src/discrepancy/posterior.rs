@@ -16,6 +16,8 @@ const LOCAL_SDS: [f64; 4] = [0.0, 1.0, 2.0, 4.0];
 const BETWEEN: [f64; 4] = [0.0, 0.5, 0.8, 0.95];
 /// Length scales over the range of a coordinate.
 const LENGTHS: [f64; 6] = [0.1, 0.2, 0.4, 0.8, 1.6, 3.2];
+/// Standard deviation of the coefficients of a plane, over the root mean square of the misfits: large, so that the misfits choose it.
+const PLANE_SD: f64 = 10.0;
 /// Difference of log density from the best parameters beyond which the search does not continue `[nats]`.
 const REACH: f64 = 6.0;
 /// Maximum number of parameters that are evaluated.
@@ -34,8 +36,11 @@ type Place = Vec<usize>;
 /// Returns the covariances that hold nearly all of the probability, with their shares of it, the most probable first. The prior
 /// is equal at all places of the grid. The search begins in the middle; next it evaluates the neighbours of the most probable
 /// place that has unevaluated ones.
-pub(super) fn posterior(misfits: &[Misfit]) -> Vec<(Covariance, f64)> {
-    let grid = Grid::new(misfits);
+///
+/// # Arguments
+/// - `has_plane`: whether the mean of the process is a plane that the misfits determine, or 0.
+pub(super) fn posterior(misfits: &[Misfit], has_plane: bool) -> Vec<(Covariance, f64)> {
+    let grid = Grid::new(misfits, has_plane);
     let mut open: BTreeMap<Place, f64> = BTreeMap::new();
     let mut opened: BTreeMap<Place, f64> = BTreeMap::new();
     let mut next = Some(grid.middle());
@@ -92,10 +97,11 @@ struct Grid {
     noise_sd: f64,
     dimension: usize,
     has_groups: bool,
+    has_plane: bool,
 }
 
 impl Grid {
-    fn new(misfits: &[Misfit]) -> Self {
+    fn new(misfits: &[Misfit], has_plane: bool) -> Self {
         let has_groups = misfits.iter().any(|misfit| misfit.group != misfits[0].group);
         // The group is a coordinate of the selection, so that a group of few misfits is represented.
         let places = misfits
@@ -112,6 +118,7 @@ impl Grid {
             noise_sd: mean(|misfit| misfit.noise_variance).sqrt(),
             dimension: misfits.first().map_or(0, |misfit| misfit.point.len()),
             has_groups,
+            has_plane,
             misfits,
         }
     }
@@ -145,6 +152,7 @@ impl Grid {
             local_sd: LOCAL_SDS[place[1]] * self.noise_sd,
             between_groups: BETWEEN[place[2]],
             lengths: place[3..].iter().map(|&length| LENGTHS[length]).collect(),
+            plane_sd: if self.has_plane { PLANE_SD * self.rms } else { 0.0 },
         }
     }
 
@@ -177,7 +185,7 @@ mod tests {
 
     /// Mean of a property over the posterior.
     fn mean(misfits: &[Misfit], value: fn(&Covariance) -> f64) -> f64 {
-        posterior(misfits)
+        posterior(misfits, false)
             .iter()
             .map(|(covariance, share)| share * value(covariance))
             .sum()
@@ -186,7 +194,7 @@ mod tests {
     #[test]
     fn the_probability_is_that_of_a_normal_density() {
         let misfits = &along(|_, x| 1.0 + x)[..2];
-        let grid = Grid::new(misfits);
+        let grid = Grid::new(misfits, false);
         let place = grid.middle();
         let covariance = grid.covariance(&place);
         let between = covariance.between((&misfits[0].point, 0), (&misfits[1].point, 0));
@@ -201,7 +209,7 @@ mod tests {
     #[test]
     fn the_search_finds_what_the_whole_grid_has() {
         let misfits = along(|group, x| libm::sin(5.0 * x) + 0.3 * group as f64);
-        let grid = Grid::new(&misfits);
+        let grid = Grid::new(&misfits, false);
         let mut best = (grid.middle(), f64::NEG_INFINITY);
         for (a, b) in (0..SDS.len()).flat_map(|a| (0..LOCAL_SDS.len()).map(move |b| (a, b))) {
             for (c, d) in (0..BETWEEN.len()).flat_map(|c| (0..LENGTHS.len()).map(move |d| (c, d))) {
@@ -212,7 +220,7 @@ mod tests {
                 }
             }
         }
-        let covariances = posterior(&misfits);
+        let covariances = posterior(&misfits, false);
         assert_eq!(covariances[0].0, grid.covariance(&best.0));
         assert!((covariances.iter().map(|(_, share)| share).sum::<f64>() - 1.0).abs() < 1e-12);
     }
@@ -237,7 +245,7 @@ mod tests {
         };
         let many = (0..240).map(|i| (0, i)).chain((0..6).map(|k| (1, 10 * k)));
         let many: Vec<Misfit> = many.map(misfit).collect();
-        let covariances = posterior(&many);
+        let covariances = posterior(&many, false);
         assert!(
             covariances.len() <= MAX_KEPT * 100 * 100 / (246 * 246),
             "{}",

@@ -80,6 +80,19 @@ impl DiscrepancyProcess {
     /// where all are 0, or where no covariance is regular to rounding.
     #[must_use]
     pub fn through(misfits: &[Misfit]) -> Option<Self> {
+        Self::new(misfits, false)
+    }
+
+    /// Returns the same process about a plane in place of 0: `m(x) = a + b'(x - 1/2)` with coordinates over their range, alike for all
+    /// groups, and independent normal coefficients of ten times the root mean square of the misfits, so that these determine it. It
+    /// predicts measurements without a model: their differences from their mean are the misfits. Checked by
+    /// `about_a_plane_a_line_goes_on_beyond_the_misfits`.
+    #[must_use]
+    pub fn about_a_plane(misfits: &[Misfit]) -> Option<Self> {
+        Self::new(misfits, true)
+    }
+
+    fn new(misfits: &[Misfit], has_plane: bool) -> Option<Self> {
         let dimension = misfits.first()?.point.len();
         let is_usable = misfits.iter().any(|misfit| misfit.value.abs() > 0.0);
         let numbers = Self::min_misfits(dimension)..=Self::MAX_MISFITS;
@@ -102,7 +115,10 @@ impl DiscrepancyProcess {
                 factor,
             })
         };
-        let parts: Vec<Part> = posterior(&misfits).into_iter().filter_map(part).collect();
+        let parts: Vec<Part> = posterior(&misfits, has_plane)
+            .into_iter()
+            .filter_map(part)
+            .collect();
         (!parts.is_empty()).then_some(DiscrepancyProcess { unit, misfits, parts })
     }
 
@@ -111,7 +127,7 @@ impl DiscrepancyProcess {
     #[must_use]
     pub fn at(&self, point: &[f64], group: usize) -> Discrepancy {
         let point = self.unit.scaled(point);
-        self.mixture(|part| {
+        let law = |part: &Part| {
             let place = (point.as_slice(), group);
             let shared = self
                 .misfits
@@ -120,36 +136,51 @@ impl DiscrepancyProcess {
             let shared = DVector::from_iterator(self.misfits.len(), shared);
             let weights = part.factor.solve(&shared);
             let covariance = &part.covariance;
-            let before = covariance.sd * covariance.sd + covariance.local_sd * covariance.local_sd;
+            let before = covariance.between(place, place) + covariance.local_sd * covariance.local_sd;
             let variance = before - shared.dot(&weights);
             (weights, variance)
-        })
+        };
+        self.mixture(self.parts.iter().map(law))
     }
 
-    /// Returns the discrepancy in the condition of a misfit, predicted from the other misfits; the covariance stays the same.
+    /// Returns the discrepancies in the conditions of some misfits, predicted from all other misfits; the covariance stays the same. `None`
+    /// where their precision is singular to rounding.
+    ///
+    /// With the precision Q of all misfits and `B = Q_SS^-1` of those that are left out, the mean is `-B Q_SR y_R` and the variance of the
+    /// misfits `diag(B)`.
     ///
     /// # Arguments
-    /// - `left_out`: number of the misfit.
+    /// - `left_out`: numbers of the misfits, in the order of the result.
     #[must_use]
-    pub fn without(&self, left_out: usize) -> Discrepancy {
-        self.mixture(|part| {
-            let precision = part.inverse[(left_out, left_out)];
-            let mut weights = -part.inverse.column(left_out) / precision;
-            weights[left_out] = 0.0;
-            (weights, 1.0 / precision - self.misfits[left_out].noise_variance)
-        })
+    pub fn without(&self, left_out: &[usize]) -> Option<Vec<Discrepancy>> {
+        let block = |part: &Part| {
+            let rows = part.inverse.select_rows(left_out);
+            let covariance = Cholesky::new(rows.select_columns(left_out))?.inverse();
+            let mut weights = -(&covariance * rows);
+            left_out.iter().for_each(|&k| weights.column_mut(k).fill(0.0));
+            Some((weights, covariance))
+        };
+        let blocks: Option<Vec<(DMatrix<f64>, DMatrix<f64>)>> = self.parts.iter().map(block).collect();
+        let blocks = blocks?;
+        let discrepancy =
+            |(row, &misfit): (usize, &usize)| {
+                let noise = self.misfits[misfit].noise_variance;
+                self.mixture(blocks.iter().map(|(weights, covariance)| {
+                    (weights.row(row).transpose(), covariance[(row, row)] - noise)
+                }))
+            };
+        Some(left_out.iter().enumerate().map(discrepancy).collect())
     }
 
-    /// Returns the mixture from the weights and the variance that each covariance gives.
-    fn mixture(&self, law: impl Fn(&Part) -> (DVector<f64>, f64)) -> Discrepancy {
+    /// Returns the mixture of the weights and variances that the covariances give, in the order of the parts.
+    fn mixture(&self, laws: impl Iterator<Item = (DVector<f64>, f64)>) -> Discrepancy {
         let values =
             DVector::from_iterator(self.misfits.len(), self.misfits.iter().map(|misfit| misfit.value));
         let mut sum = DVector::zeros(self.misfits.len());
         let mut components = Vec::with_capacity(self.parts.len());
         let total: f64 = self.parts.iter().map(|part| part.probability).sum();
-        for part in &self.parts {
+        for (part, (weights, variance)) in self.parts.iter().zip(laws) {
             let probability = part.probability / total;
-            let (weights, variance) = law(part);
             components.push(DiscrepancyComponent {
                 mean: weights.dot(&values),
                 // Rounding may leave a variance slightly below 0.
@@ -212,38 +243,58 @@ mod tests {
     }
 
     #[test]
-    fn leaving_a_misfit_out_by_the_inverse_is_leaving_it_out() {
+    fn about_a_plane_a_line_goes_on_beyond_the_misfits() {
+        let line = |slip: f64, angle: f64| 4.0 * slip - 0.2 * angle;
+        let all = misfits(|_, slip, angle| line(slip, angle) + 0.05 * libm::sin(9.0 * slip + 7.0 * angle));
+        let expected = line(1.5, 100.0);
+        let [about_0, about_plane] = [DiscrepancyProcess::through, DiscrepancyProcess::about_a_plane]
+            .map(|process| process(&all).unwrap().at(&[1.5, 100.0], 0).mean() - expected);
+        assert!(
+            about_plane.abs() < 0.3 && about_0.abs() > 1.0,
+            "{about_plane} {about_0}"
+        );
+    }
+
+    #[test]
+    fn leaving_misfits_out_by_the_inverse_is_leaving_them_out() {
         let all = misfits(surface);
         let process = DiscrepancyProcess::through(&all).unwrap();
-        let left = process.without(7);
-        let part = &process.parts[0];
-        let mut rest = process.misfits.clone();
-        let left_out = rest.remove(7);
-        let factor = part.covariance.factor(&rest).unwrap();
-        let shared = rest.iter().map(|m| {
-            part.covariance
-                .between((&m.point, m.group), (&left_out.point, left_out.group))
-        });
-        let shared = DVector::from_iterator(rest.len(), shared);
-        let values = DVector::from_iterator(rest.len(), rest.iter().map(|m| m.value));
-        let mean = factor.solve(&shared).dot(&values);
-        assert!(
-            (left.components[0].mean - mean).abs() < 1e-7,
-            "{} {mean}",
-            left.components[0].mean
-        );
-        let before =
-            part.covariance.sd * part.covariance.sd + part.covariance.local_sd * part.covariance.local_sd;
-        let variance = before - factor.solve(&shared).dot(&shared);
-        assert!((left.components[0].variance - variance).abs() < 1e-7 * before);
-        assert_eq!(left.weights[7].to_bits(), 0.0_f64.to_bits());
+        // One misfit; then the angle of 40 deg, whose misfits have no neighbour at their angle.
+        let level = (0..all.len()).filter(|&i| all[i].point[1] > 39.0 && all[i].point[1] < 41.0);
+        for left_out in [vec![7], level.collect()] {
+            let left = process.without(&left_out).unwrap();
+            let part = &process.parts[0];
+            let rest: Vec<usize> = (0..all.len()).filter(|i| !left_out.contains(i)).collect();
+            let misfits: Vec<Misfit> = rest.iter().map(|&i| process.misfits[i].clone()).collect();
+            let factor = part.covariance.factor(&misfits).unwrap();
+            let values = DVector::from_iterator(misfits.len(), misfits.iter().map(|m| m.value));
+            for (&number, discrepancy) in left_out.iter().zip(&left) {
+                let place = &process.misfits[number];
+                let shared = misfits.iter().map(|m| {
+                    part.covariance
+                        .between((&m.point, m.group), (&place.point, place.group))
+                });
+                let shared = DVector::from_iterator(misfits.len(), shared);
+                let mean = factor.solve(&shared).dot(&values);
+                let law = discrepancy.components[0];
+                assert!((law.mean - mean).abs() < 1e-7, "{} {mean}", law.mean);
+                let before = part.covariance.sd * part.covariance.sd
+                    + part.covariance.local_sd * part.covariance.local_sd;
+                let variance = before - factor.solve(&shared).dot(&shared);
+                assert!((law.variance - variance).abs() < 1e-7 * before);
+                for &other in &left_out {
+                    assert_eq!(discrepancy.weights[other].to_bits(), 0.0_f64.to_bits());
+                }
+            }
+        }
     }
 
     #[test]
     fn the_weights_are_those_of_the_mean() {
         let all = misfits(surface);
         let process = DiscrepancyProcess::through(&all).unwrap();
-        for discrepancy in [process.at(&[0.2, 33.0], 1), process.without(3)] {
+        let without = process.without(&[3]).unwrap().remove(0);
+        for discrepancy in [process.at(&[0.2, 33.0], 1), without] {
             let by_weights: f64 = discrepancy
                 .weights
                 .iter()

@@ -225,8 +225,8 @@ export const SENTENCES = {
     "Nat: logarithmische Evidenz über der des Modells, wie es ist. Fette Zeilen: die Klassen von Erklärungen, die zusammen 95 % der Wahrscheinlichkeit haben; die Mitglieder einer Klasse können diese Daten nicht unterscheiden. Die Hälfte der Prior-Wahrscheinlichkeit liegt auf „nichts fehlt“.{0}",
   "Current, corrected: the current model and what it misses at the fitted conditions, interpolated.":
     "Aktuell, korrigiert: das aktuelle Modell und, interpoliert, was ihm bei den angepassten Bedingungen fehlt.",
-  "All, combined: the corrected models together, weighed by how well each predicts the fitted runs.":
-    "Alle, kombiniert: die korrigierten Modelle zusammen, gewichtet danach, wie gut jedes die angepassten Fahrten vorhersagt.",
+  "All, combined: the corrected models and the measurements alone together, weighed by how well each predicts left-out levels of the fitted runs.":
+    "Alle, kombiniert: die korrigierten Modelle und die Messungen allein zusammen, gewichtet danach, wie gut jedes ausgelassene Stufen der angepassten Fahrten vorhersagt.",
   "Interpolation: the fitted measurements without any model, extrapolated beyond them, on the runs where that is possible.":
     "Interpolation: die angepassten Messungen ohne ein Modell, jenseits davon extrapoliert, bei den Fahrten, wo das möglich ist.",
 };

@@ -116,7 +116,7 @@ function beside(/** @type {Study} */ study, /** @type {LedgerLine[]} */ lines) {
       name: t`all, combined`,
       holdout: combined?.holdout,
       inside: combined?.coverage90.holdout,
-      meaning: t`All, combined: the corrected models together, weighed by how well each predicts the fitted runs.`,
+      meaning: t`All, combined: the corrected models and the measurements alone together, weighed by how well each predicts left-out levels of the fitted runs.`,
     },
     {
       name: t`interpolation`,

@@ -1,4 +1,4 @@
-//! A combined row: the average prediction of several models for a run and channel.
+//! A combined row: the average prediction of several models and of the measurements alone for a run and channel.
 
 use statistics::ErrorLaw;
 
@@ -9,11 +9,11 @@ use super::row::ComparisonRow;
 /// Standard deviations from the mean of a normal law to its 95 % quantile.
 const TO_Q95: f64 = 1.644_853_626_951_472_7;
 
-/// The weighted average of the corrected predictions of the models in a ledger.
+/// The weighted average of the corrected predictions of the models in a ledger, and of the prediction by the measurements alone.
 ///
 /// `p(y) = sum_k w_k N(y; m_k, s_k)` with the corrected prediction `m_k` of model k, and `s_k` from its 90 % interval. The weight `w_k`
-/// is proportional to 1 over the mean square error of the channel's fitted runs, each corrected from the other conditions. A rig has too
-/// few conditions to support sharper weights, which would select the best model.
+/// is proportional to 1 over the mean square error of the channel's fitted runs, each corrected without all runs at its level of a
+/// condition. A rig has too few levels to support sharper weights, which would select the best model.
 ///
 /// # Source
 /// Bates & Granger 1969, doi:10.1057/jors.1969.103. Checked by `models_that_err_to_both_sides_are_better_together` and others below.
@@ -21,24 +21,28 @@ const TO_Q95: f64 = 1.644_853_626_951_472_7;
 pub struct CombinedRow {
     /// Run and channel, with the prediction of the current model.
     pub row: ComparisonRow,
-    /// Weighted mean of the corrected predictions [channel's unit]; `None` if no model has one.
+    /// Weighted mean of the predictions [channel's unit]; `None` if no model is corrected.
     pub mean: Option<f64>,
     /// 5 % and 95 % quantile of a new measurement; `None` unless all models have an interval.
     pub interval: Option<[f64; 2]>,
-    /// Number of models in the average.
+    /// Number of models in the average, the measurements alone not counted.
     pub models: usize,
 }
 
 impl CombinedRow {
-    /// Averages the corrected predictions of the models, which come with their weights.
+    /// Averages the corrected predictions of the models and the prediction by the measurements alone, which come with their weights. Where
+    /// no model counts, the measurements alone are no combination.
     pub(super) fn new(
         row: &ComparisonRow,
-        of_models: impl Iterator<Item = (Option<Corrected>, f64)>,
+        of_models: &[(Option<Corrected>, f64)],
+        of_measurements: Option<(Corrected, f64)>,
     ) -> Self {
-        let counted = of_models.filter(|(_, weight)| *weight > 0.0);
-        let counted: Vec<(Corrected, f64)> = counted
-            .filter_map(|(corrected, weight)| Some((corrected?, weight)))
-            .collect();
+        let with_prediction = |&(corrected, weight): &(Option<Corrected>, f64)| Some((corrected?, weight));
+        let is_counted = |(_, weight): &(Corrected, f64)| *weight > 0.0;
+        let models = of_models.iter().filter_map(with_prediction).filter(is_counted);
+        let mut counted: Vec<(Corrected, f64)> = models.collect();
+        let models = counted.len();
+        counted.extend(of_measurements.filter(|counted| models > 0 && is_counted(counted)));
         let total: f64 = counted.iter().map(|(_, weight)| weight).sum();
         let shares = counted
             .iter()
@@ -57,7 +61,7 @@ impl CombinedRow {
             row: row.clone(),
             mean: (!counted.is_empty()).then_some(shares.sum()),
             interval: components.map(|all| [0.05, 0.95].map(|p| quantile(&all, ErrorLaw::Gaussian, p))),
-            models: counted.len(),
+            models,
         }
     }
 
@@ -87,7 +91,7 @@ mod tests {
             });
             (prediction, weight)
         };
-        CombinedRow::new(&row, corrected.iter().map(of_model))
+        CombinedRow::new(&row, &corrected.iter().map(of_model).collect::<Vec<_>>(), None)
     }
 
     /// Returns the same row for models of equal weight.
@@ -102,6 +106,19 @@ mod tests {
             (row.mean.unwrap() - 1.8).abs() < 1e-12 && row.models == 2,
             "{row:?}"
         );
+    }
+
+    #[test]
+    fn the_measurements_alone_count_beside_a_model_and_are_no_combination_without_one() {
+        let rows = fixture::calibration().comparison().rows.clone();
+        let predicted = |mean: f64| Corrected { mean, interval: None };
+        let combine = |model: Option<f64>| {
+            let of_models = [(model.map(predicted), 1.0)];
+            CombinedRow::new(&rows[0], &of_models, Some((predicted(4.0), 3.0)))
+        };
+        let [beside, without] = [Some(0.0), None].map(combine);
+        assert_eq!((beside.mean, beside.models), (Some(3.0), 1));
+        assert_eq!((without.mean, without.models), (None, 0));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Computation of the comparison of a calibration with the measurements, row by row.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use record::RejectionReason;
 use shared::channel::Channel;
@@ -92,11 +92,31 @@ impl FinishedCalibration {
                 .map(|table| table.in_fixed_sigmas(&sigmas)),
             not_interpolated: interpolations.missing(),
             corrected_fit: corrected(RunUse::Fit),
+            corrected_levels: self
+                .between_levels(&rows, &corrections)
+                .map(|table| table.in_fixed_sigmas(&sigmas)),
             corrected_holdout: corrected(RunUse::Holdout),
             not_corrected: not_corrected.into_iter().collect(),
             groups: error_groups(&rows),
             rows,
         }
+    }
+
+    /// Returns the errors of the fitted rows, each predicted by the model and the discrepancy of the other levels.
+    fn between_levels(&self, rows: &[ComparisonRow], corrections: &Corrections) -> Option<ErrorTable> {
+        let runs = &self.spec.experiment.runs;
+        let by_run: BTreeMap<(&str, Channel), &ComparisonRow> = rows
+            .iter()
+            .map(|row| ((row.run.as_str(), row.channel), row))
+            .collect();
+        let left_out = Channel::ALL.into_iter().flat_map(|channel| {
+            let discrepancies = corrections.between_levels(channel).into_iter();
+            discrepancies.map(move |(run, discrepancy)| (run, channel, discrepancy))
+        });
+        ErrorTable::new(left_out.filter_map(|(run, channel, discrepancy)| {
+            let row = *by_run.get(&(runs[run].name.as_str(), channel))?;
+            Some((row, row.predicted.map(|predicted| predicted + discrepancy)))
+        }))
     }
 
     /// Counts the final draws at which the model refuses a run; `None` if it refuses none.

@@ -21,6 +21,9 @@ pub struct Comparison {
     pub not_interpolated: Vec<String>,
     /// Errors of the corrected predictions of the fitted runs, each corrected from the other conditions.
     pub corrected_fit: Option<ErrorTable>,
+    /// Errors of the corrected predictions of the fitted runs, each corrected without all runs at its level of a condition, once for each
+    /// condition with at least three levels; null without one.
+    pub corrected_levels: Option<ErrorTable>,
     /// Errors of the corrected predictions of the holdout runs.
     pub corrected_holdout: Option<ErrorTable>,
     /// Reasons why some predictions are not corrected; empty if all are.

@@ -31,7 +31,7 @@ impl<'a> Corrections<'a> {
             let sigma = sigmas
                 .get(channel)
                 .ok_or(format!("{} has no noise", channel.words()))?;
-            Correction::new(calibration, channel, sigma.sd)
+            Correction::new(calibration, channel, sigma.sd, Basis::Model)
         };
         Corrections {
             calibration,
@@ -52,20 +52,40 @@ impl<'a> Corrections<'a> {
     /// A sentence: the channel has no discrepancy, or not at this run.
     pub fn at(&self, run: usize, channel: Channel, model: Predictive) -> Result<Corrected, String> {
         let correction = self.channels[&channel].as_ref().map_err(Clone::clone)?;
-        correction.at(self.calibration, run, model)
+        correction.at(self.calibration, run, (model.mean, model.interval.is_some()))
     }
+
+    /// Returns the discrepancy of each fitted run of a channel, predicted from the runs of all other levels: each level of each condition
+    /// is left out in turn, with the model's parameters kept, so a run stands here once for each condition that has levels.
+    pub fn between_levels(&self, channel: Channel) -> Vec<(usize, f64)> {
+        let correction = self.channels[&channel].as_ref();
+        correction.map_or_else(|_| Vec::new(), Correction::between_levels)
+    }
+}
+
+/// What predicts the fitted measurements before their misfits are interpolated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Basis {
+    /// The calibrated model.
+    Model,
+    /// The mean of the conditions. The misfits have a plane then, because nothing else says how measurements change with the conditions.
+    Mean,
 }
 
 /// The discrepancy of a channel over the conditions of the rig.
 #[derive(Debug)]
-struct Correction {
+pub(super) struct Correction {
     channel: Channel,
     conditions: Conditions,
     /// Wheel, soil and pass of each group, in the order of the group numbers in the process.
     groups: Vec<Group>,
     /// The fitted runs behind each misfit, as positions in the experiment.
     members: Vec<Vec<usize>>,
-    /// Number of each final draw that the model accepts, with its mean prediction in each condition.
+    /// Coordinates of each misfit.
+    points: Vec<Vec<f64>>,
+    /// Mean of the measured conditions [channel's unit].
+    pub(super) mean: f64,
+    /// Number of each final draw that the model accepts, with its mean prediction in each condition; empty without a model.
     draws: Vec<(usize, Vec<f64>)>,
     process: DiscrepancyProcess,
     noise_sd: f64,
@@ -79,7 +99,12 @@ fn group(run: &TestRun) -> Group {
 }
 
 impl Correction {
-    fn new(calibration: &FinishedCalibration, channel: Channel, noise_sd: f64) -> Result<Self, String> {
+    pub(super) fn new(
+        calibration: &FinishedCalibration,
+        channel: Channel,
+        noise_sd: f64,
+        basis: Basis,
+    ) -> Result<Self, String> {
         let spec = &calibration.spec;
         let all = &spec.experiment.runs;
         let measured = |run: usize| all[run].measured[channel.index()];
@@ -113,26 +138,44 @@ impl Correction {
         let mut groups: Vec<Group> = runs.iter().map(|&run| group(run)).collect();
         groups.sort();
         groups.dedup();
-        let draws = means(calibration, channel, &members);
+        let draws = match basis {
+            Basis::Model => means(calibration, channel, &members),
+            Basis::Mean => Vec::new(),
+        };
+        let value = |repeated: &Vec<usize>| {
+            let values: Vec<f64> = repeated.iter().filter_map(|&run| measured(run)).collect();
+            mean(&values)
+        };
+        let measured_means: Vec<f64> = members.iter().filter_map(value).collect();
+        let mean_of_all = mean(&measured_means).unwrap_or_default();
         let misfit = |(condition, repeated): (usize, &Vec<usize>)| {
             let repeats: Vec<&TestRun> = repeated.iter().map(|&run| &all[run]).collect();
-            let values: Vec<f64> = repeated.iter().filter_map(|&run| measured(run)).collect();
             let modelled: Vec<f64> = draws.iter().map(|(_, means)| means[condition]).collect();
+            let predicted = match basis {
+                Basis::Model => mean(&modelled)?,
+                Basis::Mean => mean_of_all,
+            };
             let variances = repeated
                 .iter()
                 .map(|&run| noise_variance(calibration, run, channel, noise_sd));
             Some(Misfit {
                 point: conditions.mean_point(&repeats),
                 group: groups.binary_search(&group(repeats[0])).ok()?,
-                value: mean(&values)? - mean(&modelled)?,
+                value: value(repeated)? - predicted,
                 noise_variance: variances.sum::<f64>() / (repeated.len() * repeated.len()) as f64,
             })
         };
         let misfits: Option<Vec<Misfit>> = members.iter().enumerate().map(misfit).collect();
-        let process = misfits.and_then(|misfits| DiscrepancyProcess::through(&misfits));
+        let misfits = misfits.unwrap_or_default();
+        let process = match basis {
+            Basis::Model => DiscrepancyProcess::through(&misfits),
+            Basis::Mean => DiscrepancyProcess::about_a_plane(&misfits),
+        };
         Ok(Correction {
             channel,
+            points: misfits.into_iter().map(|misfit| misfit.point).collect(),
             groups,
+            mean: mean_of_all,
             draws,
             process: process.ok_or(format!("{name} has no discrepancy that can be computed"))?,
             members,
@@ -141,18 +184,25 @@ impl Correction {
         })
     }
 
-    fn at(
+    /// Returns the corrected prediction of a run, or why there is none.
+    ///
+    /// # Arguments
+    /// - `run`: position in the experiment. `(value, is_distributed)`: the value to correct, and whether it has a distribution.
+    pub(super) fn at(
         &self,
         calibration: &FinishedCalibration,
         run: usize,
-        model: Predictive,
+        (value, is_distributed): (f64, bool),
     ) -> Result<Corrected, String> {
         let predicted = &calibration.spec.experiment.runs[run];
         if let Some(reason) = self.conditions.reason_beside(self.channel.words(), predicted) {
             return Err(reason);
         }
         let discrepancy = match self.members.iter().position(|members| members.contains(&run)) {
-            Some(condition) => self.process.without(condition),
+            Some(condition) => {
+                let left_out = self.process.without(&[condition]).and_then(|mut left| left.pop());
+                left_out.ok_or_else(|| format!("{} is singular without a condition", self.channel.words()))?
+            }
             // The process treats a number after the fitted groups as a group without data.
             None => self.process.at(
                 &self.conditions.point(predicted),
@@ -164,18 +214,35 @@ impl Correction {
         let (shift, spread) = self.paired(calibration, run, &discrepancy);
         let noise = noise_variance(calibration, run, self.channel, self.noise_sd);
         let component = |part: &DiscrepancyComponent| Component {
-            mean: model.mean + part.mean + shift,
+            mean: value + part.mean + shift,
             scale: Some((part.variance + spread * spread + noise).sqrt()),
             weight: part.probability,
         };
         let components: Vec<Component> = discrepancy.components.iter().map(component).collect();
         let law = calibration.spec.likelihood.law();
         Ok(Corrected {
-            mean: model.mean + discrepancy.mean() + shift,
-            interval: model
-                .interval
-                .map(|_| [0.05, 0.95].map(|p| quantile(&components, law, p))),
+            mean: value + discrepancy.mean() + shift,
+            interval: is_distributed.then(|| [0.05, 0.95].map(|p| quantile(&components, law, p))),
         })
+    }
+
+    /// Returns each fitted run with the discrepancy that the process predicts for it without a level; levels whose precision is singular to
+    /// rounding are passed over.
+    pub(super) fn between_levels(&self) -> Vec<(usize, f64)> {
+        let mut predicted = Vec::new();
+        for level in self.conditions.levels(&self.points) {
+            for (&condition, discrepancy) in level
+                .iter()
+                .zip(self.process.without(&level).into_iter().flatten())
+            {
+                predicted.extend(
+                    self.members[condition]
+                        .iter()
+                        .map(|&run| (run, discrepancy.mean())),
+                );
+            }
+        }
+        predicted
     }
 
     /// Compares each draw's prediction of the run with its predictions of the fitted conditions. Returns a mean shift, which is not 0 if
@@ -286,7 +353,7 @@ mod tests {
     fn what_a_draw_moves_everywhere_alike_is_taken_back() {
         let calibration = fixture::with_smooth_misfit();
         let run = fixture::position(&calibration, "h1");
-        let correction = Correction::new(&calibration, Channel::DrawbarPull, 1.0).unwrap();
+        let correction = Correction::new(&calibration, Channel::DrawbarPull, 1.0, Basis::Model).unwrap();
         let discrepancy = correction.process.at(
             &correction
                 .conditions

@@ -6,7 +6,8 @@
 //! - `errors`: root mean square errors by channel. `group`: errors by level of a condition; `level`: these levels.
 //! - `predictive`: the posterior predictive distribution; `mixture`: its quantiles. `interpolation`: interpolation without physics.
 //! - `correction`: predictions corrected by the model's errors in other conditions (`corrected`); `conditions`: coordinates of the rig.
-//! - `combination`: the average over the models of a study (`combined_row`); `prediction`: all predictions, run by run.
+//! - `combination`: the average over the models of a study (`combined_row`) and the measurements alone (`without_model`).
+//! - `prediction`: all predictions, run by run.
 //! - `coverage`: measurements inside their intervals. `readings`: errors of plates and rings.
 //! - `refusal`: draws at which the model refuses a run. `error_model`: the error model in words. `posterior`: draws as a table.
 
@@ -32,3 +33,4 @@ pub mod predictive;
 pub mod readings;
 pub mod refusal;
 pub mod row;
+mod without_model;

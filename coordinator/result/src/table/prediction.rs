@@ -47,13 +47,13 @@ pub struct PredictionRow {
     pub corrected_q05: Option<f64>,
     /// 95 % quantile of a new measurement.
     pub corrected_q95: Option<f64>,
-    /// Weighted mean of the corrected predictions of the ledger's models.
+    /// Weighted mean of the corrected predictions of the ledger's models and of the prediction by the measurements alone.
     pub combined: Option<f64>,
     /// 5 % quantile of a new measurement.
     pub combined_q05: Option<f64>,
     /// 95 % quantile of a new measurement.
     pub combined_q95: Option<f64>,
-    /// Number of models in the average.
+    /// Number of models in the average, the measurements alone not counted.
     pub models: usize,
     /// Interpolation of the fitted measurements, without a model.
     pub interpolated: Option<f64>,
@@ -135,8 +135,12 @@ mod tests {
             .iter()
             .find(|line| line.starts_with("h1,holdout") && line.contains("pull"));
         let cells: Vec<&str> = h1.unwrap().split(',').collect();
-        // With one model the combined prediction is the corrected one.
-        assert_eq!(cells[column("combined")], cells[column("corrected")]);
+        // The measurements alone count beside the one model.
+        let rows = study.combined().iter();
+        let of_run = |row: &&CombinedRow| row.row.run == "h1" && row.row.channel == Channel::DrawbarPull;
+        let mean = rows.filter(of_run).find_map(|row| row.mean).unwrap();
+        assert_eq!(cells[column("combined")].parse(), Ok(mean));
+        assert_ne!(cells[column("combined")], cells[column("corrected")]);
         assert_eq!(cells[column("models")], "1");
         let fast = lines.iter().find(|line| line.starts_with("fast,")).unwrap();
         assert_eq!(fast.split(',').nth(column("combined")), Some(""));

@@ -1,10 +1,13 @@
 //! The conditions that a set of runs varies, as coordinates.
 
-use job::repeats;
+use job::{levels_of, load_levels_of, repeats};
 use shared::experiment::TestRun;
 
 use super::axis::Axis;
 use crate::words::number;
+
+/// Minimum number of levels of a condition that are left out in turn.
+const MIN_LEVELS: usize = 3;
 
 /// The conditions that a set of runs varies, and those that it holds constant.
 #[derive(Debug)]
@@ -37,6 +40,28 @@ impl Conditions {
         let mean =
             |axis: &Axis| repeats.iter().map(|run| axis.value(run)).sum::<f64>() / repeats.len() as f64;
         self.axes.iter().map(mean).collect()
+    }
+
+    /// Returns the numbers of the points at each level of each condition that varies, level by level. A condition with fewer than three
+    /// levels has none here: without one of two levels, the other says nothing of how values change with it.
+    ///
+    /// # Arguments
+    /// - `points`: coordinates as [`Conditions::point`] has them.
+    pub(crate) fn levels(&self, points: &[Vec<f64>]) -> Vec<Vec<usize>> {
+        let of_axis = |(k, axis): (usize, &Axis)| -> Vec<Vec<usize>> {
+            let values: Vec<f64> = points.iter().map(|point| point[k]).collect();
+            let of_point = match axis {
+                Axis::WheelLoad => load_levels_of(&values),
+                _ => levels_of(&values),
+            };
+            let count = of_point.iter().max().map_or(0, |last| last + 1);
+            let members = |level: usize| (0..points.len()).filter(|&i| of_point[i] == level).collect();
+            match count < MIN_LEVELS {
+                true => Vec::new(),
+                false => (0..count).map(members).collect(),
+            }
+        };
+        self.axes.iter().enumerate().flat_map(of_axis).collect()
     }
 
     /// Names of the conditions that vary, as a list in a sentence.
@@ -80,4 +105,26 @@ pub(crate) fn repeated(runs: &[&TestRun]) -> Vec<Vec<usize>> {
         }
     }
     conditions
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+
+    #[test]
+    fn a_level_holds_the_points_that_share_it_and_two_levels_are_not_left_out() {
+        let calibration = fixture::calibration();
+        let run = |slip: f64, angle: f64| TestRun {
+            slip,
+            slip_angle_deg: angle,
+            ..calibration.spec.experiment.runs[0].clone()
+        };
+        let runs = [(0.1, 0.0), (0.102, 30.0), (0.5, 0.0), (0.9, 30.0)].map(|(slip, angle)| run(slip, angle));
+        let runs: Vec<&TestRun> = runs.iter().collect();
+        let conditions = Conditions::new(&runs);
+        assert_eq!(conditions.axes, [Axis::Slip, Axis::SlipAngle]);
+        let points: Vec<Vec<f64>> = runs.iter().map(|run| conditions.point(run)).collect();
+        assert_eq!(conditions.levels(&points), [vec![0, 1], vec![2], vec![3]]);
+    }
 }
