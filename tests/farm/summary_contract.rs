@@ -90,6 +90,9 @@ fn a_summary_keeps_the_contract() {
     );
     assert_eq!(calibration["error"]["fit"]["torque"]["runs"], 24);
     assert_eq!(calibration["error"]["holdout"]["sinkage"]["runs"], 16);
+    let groups = items(&calibration["holdout_groups"]);
+    let runs = groups.filter_map(|group| group["runs"].as_u64());
+    assert_eq!(Some(runs.sum()), calibration["held_out_runs"].as_u64());
     assert_eq!(calibration["error"]["fit"]["lateral_force"], Value::Null);
     assert_eq!(summary["discovery"], Value::Null);
     assert_eq!(calibration["baseline"]["name"], "interpolation");

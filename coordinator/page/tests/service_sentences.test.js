@@ -41,6 +41,10 @@ test("sentences of the service are German with decimal commas, whole", () => {
       "Einsinkung: Fehler 0,65 mm, das 1,6-Fache des Rauschens: am meisten bei einer Last von 60 N, dort zu hoch berechnet",
     ],
     [
+      "most at a slip angle of 90 deg, beyond the fitted ones, under-predicted there",
+      "am meisten bei einem Schräglaufwinkel von 90°, jenseits der angepassten, dort zu niedrig berechnet",
+    ],
+    [
       "measure runs in skid: they would show 1 further effect",
       "messen: gebremste Fahrten; das würde 1 weiteren Effekt zeigen",
     ],

@@ -61,6 +61,8 @@ type Flag = Schemas["StudyFlag"];
 /** A line of the error ledger of a study. */
 type LedgerEntry = Schemas["CalibrationSummary"];
 type ErrorTable = Schemas["ErrorTable"];
+/** The errors on the held-out runs of a group. */
+type HoldoutGroup = Schemas["HoldoutSummary"];
 type Comparison = Schemas["Comparison"];
 /** A measured value of a channel of a run, beside what the model computes. */
 type MeasuredRow = Schemas["ComparisonRow"];

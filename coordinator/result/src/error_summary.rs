@@ -3,11 +3,13 @@
 use shared::experiment::RunUse;
 
 use crate::coverage_summary::CoverageSummary;
+use crate::holdout_summary::HoldoutSummary;
 use crate::table::combined_row::CombinedRow;
 use crate::table::comparison::Comparison;
 use crate::table::coverage::Coverage;
 use crate::table::errors::ErrorTable;
 use crate::table::fixed_sigma::FixedSigmas;
+use crate::table::holdout_errors::HoldoutErrors;
 use crate::table::row::rows_of;
 
 /// Errors of a model on fitted and on holdout runs.
@@ -37,6 +39,9 @@ pub struct CorrectedSummary {
     pub fit: Option<ErrorTable>,
     /// Errors of the holdout runs.
     pub holdout: Option<ErrorTable>,
+    /// Errors of the holdout runs by group; groups without a run are left out.
+    #[serde(default)]
+    pub holdout_groups: Vec<HoldoutSummary>,
     /// Share of measurements inside their 90 % interval.
     pub coverage90: CoverageSummary,
     /// Reasons why some predictions are not corrected; empty if all are.
@@ -50,6 +55,7 @@ impl CorrectedSummary {
         CorrectedSummary {
             fit: comparison.corrected_fit.clone(),
             holdout: comparison.corrected_holdout.clone(),
+            holdout_groups: HoldoutSummary::all(HoldoutErrors::of_corrected(comparison.rows.iter())),
             coverage90: CoverageSummary::from_counts(coverage),
             missing: comparison.not_corrected.clone(),
         }
@@ -57,9 +63,17 @@ impl CorrectedSummary {
 
     /// Returns the same errors with `rmse_fixed_sigma` in the given noise standard deviations.
     pub fn in_fixed_sigmas(self, sigmas: &FixedSigmas) -> Self {
-        let CorrectedSummary { fit, holdout, .. } = self;
-        let ErrorSummary { fit, holdout } = ErrorSummary { fit, holdout }.in_fixed_sigmas(sigmas);
-        CorrectedSummary { fit, holdout, ..self }
+        let ErrorSummary { fit, holdout } = ErrorSummary {
+            fit: self.fit,
+            holdout: self.holdout,
+        }
+        .in_fixed_sigmas(sigmas);
+        CorrectedSummary {
+            fit,
+            holdout,
+            holdout_groups: HoldoutSummary::all_in_fixed_sigmas(self.holdout_groups, sigmas),
+            ..self
+        }
     }
 }
 
@@ -72,6 +86,9 @@ pub struct CombinedSummary {
     pub fit: Option<ErrorTable>,
     /// Errors of the holdout runs.
     pub holdout: Option<ErrorTable>,
+    /// Errors of the holdout runs by group; groups without a run are left out.
+    #[serde(default)]
+    pub holdout_groups: Vec<HoldoutSummary>,
     /// Share of measurements inside their 90 % interval.
     pub coverage90: CoverageSummary,
 }
@@ -93,6 +110,10 @@ impl CombinedSummary {
             models,
             fit: errors(RunUse::Fit),
             holdout: errors(RunUse::Holdout),
+            holdout_groups: HoldoutSummary::all_in_fixed_sigmas(
+                HoldoutSummary::all(HoldoutErrors::of_combined(rows.iter())),
+                sigmas,
+            ),
             coverage90: CoverageSummary::from_counts(|usage| {
                 Coverage::from_outcomes(used(usage).filter_map(CombinedRow::covered))
             }),
@@ -108,6 +129,9 @@ pub struct BaselineSummary {
     pub name: String,
     /// Errors on the holdout runs.
     pub holdout: Option<ErrorTable>,
+    /// Errors of the holdout runs by group; groups without a run are left out.
+    #[serde(default)]
+    pub holdout_groups: Vec<HoldoutSummary>,
     /// Reasons why some runs are not interpolated; empty if all are.
     pub missing: Vec<String>,
 }
@@ -118,6 +142,7 @@ impl BaselineSummary {
         BaselineSummary {
             name: "interpolation".into(),
             holdout: comparison.baseline_holdout.clone(),
+            holdout_groups: HoldoutSummary::all(HoldoutErrors::of_baseline(comparison.rows.iter())),
             missing: comparison.not_interpolated.clone(),
         }
     }
@@ -126,6 +151,7 @@ impl BaselineSummary {
     pub fn in_fixed_sigmas(self, sigmas: &FixedSigmas) -> Self {
         BaselineSummary {
             holdout: self.holdout.map(|table| table.in_fixed_sigmas(sigmas)),
+            holdout_groups: HoldoutSummary::all_in_fixed_sigmas(self.holdout_groups, sigmas),
             ..self
         }
     }

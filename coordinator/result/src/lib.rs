@@ -7,7 +7,7 @@
 //! - [`finished_calibration`], [`study`]: the inputs of the results. [`study_member`]: a calibration or search of a study.
 //! - [`study_failure`]: the reason of a failure, with advice.
 //! - [`table`]: model against measurement, errors, intervals, the posterior's draws.
-//! - [`parameter_summary`], [`point_estimate`], [`error_summary`], [`coverage_summary`]: entries of summaries.
+//! - [`parameter_summary`], [`point_estimate`], [`error_summary`], [`holdout_summary`], [`coverage_summary`]: entries of summaries.
 //! - [`diagnostics`]: how far the posterior can be trusted. [`flag`]: a warning.
 //! - [`model_comparison`]: the models that a job compares, by evidence and by prediction.
 //! - [`validation`]: the levels of a factor, each predicted from the others.
@@ -28,6 +28,7 @@ extern crate self as result;
 #[cfg(test)]
 pub mod fixture;
 pub mod flag;
+pub mod holdout_summary;
 pub mod model_comparison;
 pub mod parameter_summary;
 pub mod point_estimate;
@@ -57,6 +58,8 @@ pub use table::comparison::Comparison;
 pub use table::errors::{ChannelError, ErrorTable};
 pub use table::fixed_sigma::{FixedSigma, FixedSigmas, SigmaSource};
 pub use table::group::{ErrorGroup, GroupBy, GroupError};
+pub use table::holdout_errors::HoldoutErrors;
+pub use table::holdout_group::HoldoutGroup;
 pub use table::interpolation::{InterpolatedOver, Interpolations};
 pub use table::mixture::Component;
 pub use table::posterior::PosteriorTable;

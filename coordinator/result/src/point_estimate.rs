@@ -8,7 +8,9 @@ use record::EstimateRow;
 
 use crate::error_summary::{BaselineSummary, CorrectedSummary, ErrorSummary};
 use crate::finished_calibration::FinishedCalibration;
+use crate::holdout_summary::HoldoutSummary;
 use crate::table::fixed_sigma::FixedSigmas;
+use crate::table::holdout_errors::HoldoutErrors;
 
 /// The result of a fit or a search.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -30,6 +32,9 @@ pub struct PointEstimate {
     pub log_posterior: f64,
     /// Errors of the model at these parameters.
     pub error: ErrorSummary,
+    /// Errors of the model on the holdout runs by group; groups without a run are left out.
+    #[serde(default)]
+    pub holdout_groups: Vec<HoldoutSummary>,
     /// Errors of interpolation without physics.
     pub baseline: BaselineSummary,
     /// Errors of the corrected predictions.
@@ -103,6 +108,7 @@ impl PointEstimate {
             baseline: self.baseline.in_fixed_sigmas(sigmas),
             corrected: self.corrected.in_fixed_sigmas(sigmas),
             error: self.error.in_fixed_sigmas(sigmas),
+            holdout_groups: HoldoutSummary::all_in_fixed_sigmas(self.holdout_groups, sigmas),
             ..self
         }
     }
@@ -131,6 +137,7 @@ impl FinishedCalibration {
                 fit: comparison.fit.clone(),
                 holdout: comparison.holdout.clone(),
             },
+            holdout_groups: HoldoutSummary::all(HoldoutErrors::of_model(comparison.rows.iter())),
             evaluations: self.row.evaluations.unwrap_or(0),
             rejected: self.row.rejected.unwrap_or(0),
             wall_s: self.row.busy_ms as f64 / 1000.0,

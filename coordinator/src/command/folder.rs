@@ -10,7 +10,7 @@ use tokio::net::TcpListener;
 
 use super::exposure::exposure;
 use super::output::{note, say, width};
-use super::progress::Display;
+use super::progress::{Display, Parts};
 use super::shutdown::{Shutdown, Stopped, stop_signal};
 use crate::config::{ExposureArguments, ModelArguments};
 use crate::embedded::{LocalModels, LocalWorkers};
@@ -291,7 +291,7 @@ async fn watch_until_over(
     tokio::pin!(stop);
     let store_fails = service.store().writer().stopped();
     tokio::pin!(store_fails);
-    let mut display = Display::new(expected_members(study, service).await?);
+    let mut display = Display::new(parts(study, service).await?);
     loop {
         tokio::select! {
             signal = &mut stop => { display.finish(); return Err(Stopped::by(signal).into()); }
@@ -322,15 +322,16 @@ async fn watch_until_over(
     }
 }
 
-/// Returns the expected number of calibrations and searches of a study. A study that adds effects is expected to find one.
-async fn expected_members(study: i64, service: &Service) -> anyhow::Result<usize> {
+/// Returns what is known of the parts of a study.
+async fn parts(study: i64, service: &Service) -> anyhow::Result<Parts> {
     let rows = service.store().reader().study(study).await?;
-    let Some(first) = rows.first() else { return Ok(0) };
-    let spec = service.spec_of(first).await?;
-    let to_come = match spec.discovery.apply {
-        Apply::Off => 0,
-        Apply::Ask => 1,
-        Apply::Auto | Apply::Leading => 3,
+    let Some(first) = rows.first() else {
+        return Ok(Parts::Calibrations(0));
     };
-    Ok(rows.len().max(spec.models + to_come))
+    let spec = service.spec_of(first).await?;
+    Ok(match spec.discovery.apply {
+        Apply::Off => Parts::Calibrations(rows.len().max(spec.models)),
+        Apply::Ask => Parts::WithSearch,
+        Apply::Auto | Apply::Leading => Parts::Rounds,
+    })
 }

@@ -1,4 +1,4 @@
-//! The progress display of a study: one share of the whole, which never falls.
+//! The progress display of a study: one share of the whole where its parts are known, else that of the present part.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -12,6 +12,28 @@ use super::output::note;
 const MIN_SHARE: f64 = 0.03;
 /// The largest share that the display shows of a study, because the number of its members is a guess.
 const MAX_SHARE: f64 = 0.99;
+
+/// What is known of the parts of a study when its display begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Parts {
+    /// The number of calibrations.
+    Calibrations(usize),
+    /// A calibration and a search, which takes the longer time by a factor that nobody knows.
+    WithSearch,
+    /// Rounds of a calibration and a search, until a search names nothing.
+    Rounds,
+}
+
+impl Parts {
+    /// Says what may follow the present part of the study; `None` if nothing does, or if the share tells.
+    fn to_come(self, present: Position) -> Option<&'static str> {
+        match (self, present) {
+            (Parts::Rounds, _) => Some("further rounds may follow"),
+            (Parts::WithSearch, Position::Search { .. }) | (Parts::Calibrations(_), _) => None,
+            (Parts::WithSearch, _) => Some("a search follows"),
+        }
+    }
+}
 
 /// The finished share of a study, from 0 to 1. Its members are equal parts, and the present one counts by its finished share. The share never
 /// falls, although the number of members is a guess.
@@ -45,12 +67,16 @@ fn time_to_go(elapsed_s: f64, first: f64, share: f64) -> Option<String> {
 /// Returns the phase of a calibration in words: `stage 7 of about 12`.
 ///
 /// # Arguments
+/// - `doing`: what a search does.
 /// - `first`: stage and exponent at which it was seen first; its stages to come climb as fast as those since then.
-fn phase(position: Position, first: (u32, f64)) -> String {
+fn phase(position: Position, doing: Option<&str>, first: (u32, f64)) -> String {
     let (stage, exponent) = match position {
         Position::Fit { steps } => return format!("fit, step {steps}"),
         Position::Evolution { generations } => return format!("generation {generations}"),
-        Position::Search { .. } => return "search for a missing effect".into(),
+        Position::Search { .. } => {
+            let doing = doing.map(|doing| format!(" ({doing})"));
+            return format!("search for a missing effect{}", doing.unwrap_or_default());
+        }
         Position::Sampler { stage: 0, .. } => return "draws from the prior".into(),
         Position::Sampler {
             stage,
@@ -70,24 +96,37 @@ fn phase(position: Position, first: (u32, f64)) -> String {
     }
 }
 
+/// Returns how far a study, or its present part, has come, and how long it takes: `31 %, about 6 s left`,
+/// `31 % of this search, further rounds may follow`.
+///
+/// # Arguments
+/// - `left`: the remaining time of the study or of the part, if it can be estimated.
+fn share_words(parts: Parts, position: Position, share: f64, left: Option<String>) -> String {
+    let part = match (parts, position) {
+        (Parts::Calibrations(_), _) => "",
+        (_, Position::Search { .. }) => " of this search",
+        _ => " of this calibration",
+    };
+    let clauses = left.as_deref().into_iter().chain(parts.to_come(position));
+    let clauses: String = clauses.map(|clause| format!(", {clause}")).collect();
+    format!("{:2.0} %{part}{clauses}", 100.0 * share)
+}
+
 /// A bar on a terminal; a line for each phase of each calibration elsewhere.
 pub(super) struct Display {
     bar: Option<ProgressBar>,
-    began: Instant,
+    parts: Parts,
     share: StudyShare,
-    /// The share when the display began.
-    first_share: Option<f64>,
+    /// Time and share when the display of the study began, or that of its present part where the parts are not known.
+    first_share: Option<(Instant, f64)>,
     /// The present calibration with its first stage and exponent.
     first: Option<(i64, (u32, f64))>,
     /// The phase that was shown last.
     phase: (i64, String),
-    /// Least number of members in the end.
-    expected: usize,
 }
 
 impl Display {
-    /// - `expected`: the least number of calibrations and searches that the study will have.
-    pub(super) fn new(expected: usize) -> Self {
+    pub(super) fn new(parts: Parts) -> Self {
         let bar = std::io::stderr().is_terminal().then(|| {
             let style = ProgressStyle::with_template("[{bar:20}] {wide_msg}")
                 .unwrap_or_else(|_| ProgressStyle::default_bar());
@@ -97,12 +136,11 @@ impl Display {
         });
         Display {
             bar,
-            began: Instant::now(),
+            parts,
             share: StudyShare::default(),
             first_share: None,
             first: None,
             phase: (0, String::new()),
-            expected,
         }
     }
 
@@ -117,18 +155,28 @@ impl Display {
             } => (stage, tempering_exponent),
             Position::Fit { .. } | Position::Evolution { .. } | Position::Search { .. } => (0, 0.0),
         };
+        let is_next = self.first.is_none_or(|(id, _)| id != status.id);
         let first = match self.first {
-            Some((id, first)) if id == status.id && first.1 > 0.0 => first,
+            Some((_, first)) if !is_next && first.1 > 0.0 => first,
             _ => position,
         };
         self.first = Some((status.id, first));
-        let share = self.share.advance(over, self.expected, p);
-        let first_share = *self.first_share.get_or_insert(share);
-        let left = time_to_go(self.began.elapsed().as_secs_f64(), first_share, share);
-        let left = left.map_or(String::new(), |left| format!(", {left}"));
+        let share = match self.parts {
+            Parts::Calibrations(expected) => self.share.advance(over, expected, p),
+            Parts::WithSearch | Parts::Rounds => p.share,
+        };
+        if is_next && !matches!(self.parts, Parts::Calibrations(_)) {
+            self.first_share = None;
+        }
+        let (began, first_share) = *self.first_share.get_or_insert((Instant::now(), share));
+        let left = time_to_go(began.elapsed().as_secs_f64(), first_share, share);
+        // The share of a search tells how much was computed, and nothing of its end.
+        let left = left.filter(|_| !matches!(p.position, Position::Search { .. }));
         let name = status.name.trim_end_matches(" (discovery)");
-        let phase = (status.id, phase(p.position, first));
-        let message = format!("{:2.0} %{left}: {name}, {}", 100.0 * share, phase.1);
+        let doing = p.search.as_ref().map(|search| search.doing.as_str());
+        let phase = (status.id, phase(p.position, doing, first));
+        let share_words = share_words(self.parts, p.position, share, left);
+        let message = format!("{share_words}: {name}, {}", phase.1);
         match &self.bar {
             Some(bar) => {
                 bar.set_position((1000.0 * share) as u64);
@@ -156,9 +204,13 @@ impl Display {
     }
 }
 
-/// Returns a phase without the estimated number of stages.
+/// Returns a phase without the estimated number of stages and without the step of a fit.
 fn stage_of(phase: &str) -> &str {
-    phase.split([',', ' ']).nth(1).unwrap_or(phase)
+    let of_stage = phase
+        .split([',', ' '])
+        .nth(1)
+        .filter(|_| !phase.starts_with("search"));
+    of_stage.unwrap_or(phase)
 }
 
 #[cfg(test)]
@@ -207,6 +259,40 @@ mod tests {
     }
 
     #[test]
+    fn where_rounds_may_follow_a_share_is_that_of_the_present_part_and_a_search_has_no_time_left() {
+        let words = |parts, position, left: Option<&str>| {
+            share_words(parts, position, 0.308, left.map(str::to_owned))
+        };
+        let (fit, search) = (Position::Fit { steps: 5 }, Position::Search { rounds: 9 });
+        let left = Some("about 6 s left");
+        assert_eq!(words(Parts::Calibrations(1), fit, left), "31 %, about 6 s left");
+        assert_eq!(
+            words(Parts::WithSearch, fit, left),
+            "31 % of this calibration, about 6 s left, a search follows"
+        );
+        assert_eq!(words(Parts::WithSearch, search, None), "31 % of this search");
+        assert_eq!(
+            words(Parts::Rounds, fit, None),
+            "31 % of this calibration, further rounds may follow"
+        );
+        assert_eq!(
+            words(Parts::Rounds, search, None),
+            "31 % of this search, further rounds may follow"
+        );
+    }
+
+    #[test]
+    fn what_a_search_does_is_a_phase_and_a_step_of_a_fit_is_none() {
+        let phase = |position, doing| phase(position, doing, (0, 0.0));
+        let search = |doing| phase(Position::Search { rounds: 1 }, Some(doing));
+        let [alone, together] = ["tries each effect alone", "combines effects"].map(search);
+        assert_eq!(alone, "search for a missing effect (tries each effect alone)");
+        assert!(stage_of(&alone) != stage_of(&together));
+        let [fit, further] = [1, 2].map(|steps| phase(Position::Fit { steps }, None));
+        assert!(fit != further && stage_of(&fit) == stage_of(&further));
+    }
+
+    #[test]
     fn the_time_to_go_follows_from_the_share_and_waits_for_some_of_it() {
         assert_eq!(time_to_go(10.0, 0.0, 0.01), None);
         assert_eq!(time_to_go(10.0, 0.0, 0.5).as_deref(), Some("about 10 s left"));
@@ -219,12 +305,12 @@ mod tests {
 
     #[test]
     fn the_number_of_stages_follows_from_the_climb_so_far() {
-        let words = |stage, exponent| phase(sampler(stage, exponent), (1, 1e-4));
+        let words = |stage, exponent| phase(sampler(stage, exponent), None, (1, 1e-4));
         assert_eq!(words(1, 1e-4), "stage 1");
         assert_eq!(words(3, 1e-2), "stage 3 of about 5");
         assert_eq!(words(5, 1.0), "stage 5, the last");
         assert_eq!(
-            phase(Position::Search { rounds: 1 }, (0, 0.0)),
+            phase(Position::Search { rounds: 1 }, None, (0, 0.0)),
             "search for a missing effect"
         );
     }

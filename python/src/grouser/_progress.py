@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from typing import Any
 
 # What `coordinator run` writes where it has no terminal: `31 %, about 6 s left: sand, stage 3 of about 10`.
-LINE = re.compile(r"^\s*(\d+) %(?:, [^:]*)?: ")
+# Where a search is among the parts: `31 % of this search, further rounds may follow: sand, search for a missing effect`.
+LINE = re.compile(r"^\s*(\d+) %( of this \w+)?(?:, [^:]*)?: ")
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,9 @@ OnProgress = Callable[[Progress], None]
 def of_line(line: str) -> Progress | None:
     """The progress that a line of the program tells; ``None`` of other lines."""
     match = LINE.match(line)
-    return Progress(line.strip(), int(match.group(1)) / 100) if match else None
+    if match is None:
+        return None
+    return Progress(line.strip(), None if match.group(2) else int(match.group(1)) / 100)
 
 
 def of_status(status: Mapping[str, Any]) -> Progress:

@@ -100,6 +100,7 @@ const PHRASES = {
   "most at a (?:sled )?speed of ([\\d.]+)": "am meisten bei einer Geschwindigkeit von $1",
   "most at a rim speed of ([\\d.]+)": "am meisten bei einer Umfangsgeschwindigkeit von $1",
   "most at (?:a )?slip (?:of )?([\\d.−-]+)": "am meisten bei Schlupf $1",
+  ", beyond the fitted ones": ", jenseits der angepassten",
   ", (over|under)-predicted there": ", dort $1-predicted",
   "over-predicted at low slip and under-predicted at high slip":
     "bei kleinem Schlupf zu hoch und bei großem zu niedrig berechnet",

@@ -10,6 +10,8 @@ import { Table } from "./table.js";
 
 const USES = { fit: t`fitted`, holdout: t`held out` };
 const BOTH = /** @type {const} */ (["fit", "holdout"]);
+/** @type {Record<string, string>} */
+const GROUPS = { in_levels: t`in levels`, between_levels: t`between levels`, beyond: t`beyond` };
 
 /**
  * A table for each set of runs: neither errors nor evidence compare between them.
@@ -46,37 +48,52 @@ function SetLedger({ study, lines, label }) {
   ];
   const row = (
     /** @type {string} */ name,
-    /** @type {Use} */ use,
-    /** @type {ErrorTable} */ error,
+    /** @type {string} */ runs,
+    /** @type {ErrorTable | null | undefined} */ error,
     /** @type {number | null | undefined} */ inside,
     evidence = "",
   ) => [
     name,
-    USES[use],
+    runs,
     ...channels.map((c) => {
-      const ofChannel = error[c];
+      const ofChannel = error?.[c];
       return ofChannel ? errorWords(ofChannel.rmse * shown(unitOf(c)).scale) : "–";
     }),
-    errorWords(error.all.rmse_fixed_sigma ?? error.all.rmse_sigma),
+    errorWords(error?.all.rmse_fixed_sigma ?? error?.all.rmse_sigma),
     inside === null || inside === undefined ? "–" : `${Math.round(100 * inside)} %`,
     evidence,
   ];
+  const groupRows = (/** @type {HoldoutGroup[] | undefined} */ groups) =>
+    several(groups).map((group) => row("", `${GROUPS[group.name]} (${group.runs})`, group.error, group.coverage90));
   const rows = lines.flatMap(({ name, line }) =>
     BOTH.flatMap((use) => {
       const error = line.error[use];
       if (!error) return [];
       const evidence =
         use === "fit" && typeof line.log_evidence === "number" ? minus(line.log_evidence.toFixed(1)) : "";
-      return [row(use === "fit" ? name : "", use, error, line.coverage90[use], evidence)];
+      const ofUse = row(use === "fit" ? name : "", USES[use], error, line.coverage90[use], evidence);
+      return use === "fit" ? [ofUse] : [ofUse, ...groupRows(line.holdout_groups)];
     }),
   );
   const besides = beside(study, lines).filter(({ holdout }) => holdout);
-  for (const { name, holdout, inside } of besides) if (holdout) rows.push(row(name, "holdout", holdout, inside));
+  for (const { name, holdout, inside, groups } of besides)
+    rows.push(row(name, USES.holdout, holdout, inside), ...groupRows(groups));
+  const isGrouped = lines.some(({ line }) => several(line.holdout_groups).length > 0);
   const isByWidth = lines.some(({ line }) =>
     BOTH.some((use) => isInsideByWidth(line.error[use], line.coverage90[use])),
   );
   return html`
     <${Table} label=${label} head=${head} rows=${rows} numbers=${head.map((_, k) => k).filter((k) => k > 1)} />
+    ${
+      isGrouped &&
+      html`
+        <p class="note">
+          ${t`Held-out runs, with their number: in levels, each condition is one that was fitted, though perhaps not
+            together with the others; between levels, a condition lies between fitted ones; beyond, it lies outside of
+            what was fitted, or no fitted run has the wheel or the soil.`}
+        </p>
+      `
+    }
     ${besides.length > 0 && html`<p class="note">${besides.map(({ meaning }) => meaning).join(" ")}</p>`}
     ${
       isByWidth &&
@@ -88,6 +105,9 @@ function SetLedger({ study, lines, label }) {
     }
   `;
 }
+
+/** The groups to show: none where all runs are in one. */
+const several = (/** @type {HoldoutGroup[] | undefined} */ groups) => (groups && groups.length > 1 ? groups : []);
 
 /** The errors in noise standard deviations above which intervals of that noise would hold few of the measurements. */
 const LARGE = 3;
@@ -110,18 +130,22 @@ function beside(/** @type {Study} */ study, /** @type {LedgerLine[]} */ lines) {
       name: t`current, corrected`,
       holdout: corrected?.holdout,
       inside: corrected?.coverage90.holdout,
+      groups: corrected?.holdout_groups,
       meaning: t`Current, corrected: the current model and what it misses at the fitted conditions, interpolated.`,
     },
     {
       name: t`all, combined`,
       holdout: combined?.holdout,
       inside: combined?.coverage90.holdout,
-      meaning: t`All, combined: the corrected models and the measurements alone together, weighed by how well each predicts left-out levels of the fitted runs.`,
+      groups: combined?.holdout_groups,
+      meaning: t`All, combined: the corrected models and the measurements alone together, weighed by how well each predicts
+        left-out levels of the fitted runs.`,
     },
     {
       name: t`interpolation`,
       holdout: current?.baseline.holdout,
       inside: null,
+      groups: current?.baseline.holdout_groups,
       meaning: t`Interpolation: the fitted measurements without any model, extrapolated beyond them, on the runs where
         that is possible.`,
     },

@@ -174,6 +174,7 @@ function Member(/** @type {{ member: Member, reload: () => void }} */ { member, 
           ${
             share < MOST_SHARE &&
             typeof progress?.remaining_s !== "number" &&
+            member.kind !== "search" &&
             seen.current &&
             html`
               ${" "}

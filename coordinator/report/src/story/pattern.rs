@@ -1,34 +1,82 @@
 //! The pattern of a channel's errors in words: the conditions at which they are largest.
 
-use result::table::level::few_levels;
+use job::load_levels_of;
+use result::table::level::{Level, few_levels};
 use result::table::row::ComparisonRow;
 use result::words::number;
 
 /// Ratio of a level's error to that of all runs above which the level stands out.
 const STANDS_OUT: f64 = 1.3;
 
-/// A function that reads a condition from a row.
-type Condition = (&'static str, f64, &'static str, fn(&ComparisonRow) -> f64);
+/// A condition: its name before a value, the factor and unit in which it is shown, and its value of a row.
+struct Condition {
+    name: &'static str,
+    factor: f64,
+    unit: &'static str,
+    value: fn(&ComparisonRow) -> f64,
+    /// Whether a rig that does not hold the condition lets it scatter.
+    may_scatter: bool,
+}
 
-/// Slip, load, speed and slip angle, each with the factor and unit in which it is shown.
 const CONDITIONS: [Condition; 4] = [
-    ("slip", 1.0, "", |row| row.slip),
-    ("a load of", 1.0, " N", |row| row.wheel_load_n),
-    ("a speed of", 1000.0, " mm/s", |row| row.sled_speed_m_s),
-    ("a slip angle of", 1.0, " deg", |row| row.slip_angle_deg),
+    Condition {
+        name: "slip",
+        factor: 1.0,
+        unit: "",
+        value: |row| row.slip,
+        may_scatter: false,
+    },
+    Condition {
+        name: "a load of",
+        factor: 1.0,
+        unit: " N",
+        value: |row| row.wheel_load_n,
+        may_scatter: true,
+    },
+    Condition {
+        name: "a speed of",
+        factor: 1000.0,
+        unit: " mm/s",
+        value: |row| row.sled_speed_m_s,
+        may_scatter: false,
+    },
+    Condition {
+        name: "a slip angle of",
+        factor: 1.0,
+        unit: " deg",
+        value: |row| row.slip_angle_deg,
+        may_scatter: false,
+    },
 ];
+
+/// A measured minus predicted value with its row.
+type Residual<'a> = (&'a ComparisonRow, f64);
 
 /// Describes where the errors of a channel without a significant trend lie: the common sign in all runs, else the level with the largest
 /// error.
 pub(super) fn place(rows: &[&ComparisonRow]) -> Option<String> {
-    let residuals = rows
-        .iter()
-        .filter_map(|row| Some((*row, row.measured - row.predicted?)));
-    let residuals: Vec<(&ComparisonRow, f64)> = residuals.collect();
-    one_direction(&residuals).or_else(|| standing_out(&residuals))
+    let residuals = residuals(rows);
+    let level = || Some(standing_out(&residuals)?.words(""));
+    one_direction(&residuals).or_else(level)
 }
 
-fn one_direction(residuals: &[(&ComparisonRow, f64)]) -> Option<String> {
+/// Describes where the errors of holdout runs lie if that is a level beyond the fitted runs, about which no trend of the fitted residuals says
+/// anything.
+pub(super) fn place_beyond(holdout: &[&ComparisonRow], fitted: &[&ComparisonRow]) -> Option<String> {
+    let residuals = residuals(holdout);
+    let worst = standing_out(&residuals)?;
+    let values = || fitted.iter().map(|row| (worst.condition.value)(row));
+    let is_beyond =
+        values().all(|value| value < worst.level.from) || values().all(|value| value > worst.level.to);
+    (is_beyond && !fitted.is_empty()).then(|| worst.words(", beyond the fitted ones"))
+}
+
+fn residuals<'a>(rows: &[&'a ComparisonRow]) -> Vec<Residual<'a>> {
+    let residual = |row: &&'a ComparisonRow| Some((*row, row.measured - row.predicted?));
+    rows.iter().filter_map(residual).collect()
+}
+
+fn one_direction(residuals: &[Residual]) -> Option<String> {
     let above = residuals.iter().filter(|(_, r)| *r > 0.0).count();
     let direction = match above {
         0 => "over",
@@ -38,44 +86,66 @@ fn one_direction(residuals: &[(&ComparisonRow, f64)]) -> Option<String> {
     (residuals.len() > 1).then(|| format!("{direction}-predicted in every run"))
 }
 
-/// Names the worst level of the condition that tells best where the errors are large: an angle of 90 degrees, and not the low load that a
-/// ploughing wheel has there.
-fn standing_out(residuals: &[(&ComparisonRow, f64)]) -> Option<String> {
-    let all: Vec<f64> = residuals.iter().map(|(_, r)| *r).collect();
-    let threshold = STANDS_OUT * rms(&all);
-    let mut best: Option<(f64, String)> = None;
-    for (name, factor, unit, value) in CONDITIONS {
-        let levels = few_levels(residuals.iter().map(|(row, _)| value(row)));
-        let groups: Vec<Vec<f64>> = levels
-            .iter()
-            .map(|level| {
-                let of_level = residuals.iter().filter(|(row, _)| level.holds(value(row)));
-                of_level.map(|(_, r)| *r).collect()
-            })
-            .collect();
-        let worst = levels
-            .iter()
-            .zip(&groups)
-            .max_by(|a, b| rms(a.1).total_cmp(&rms(b.1)));
-        let Some((level, of_level)) =
-            worst.filter(|(_, of_level)| levels.len() > 1 && rms(of_level) > threshold)
-        else {
-            continue;
+/// The level of a condition with the largest errors.
+struct WorstLevel {
+    condition: &'static Condition,
+    level: Level,
+    /// Whether the values of the condition scatter without a gap, because the rig does not hold it.
+    is_scattered: bool,
+    /// Variance of the sizes of residuals within the levels of the condition.
+    scatter: f64,
+    /// Mean over root mean square of the level's residuals.
+    bias: f64,
+}
+
+impl WorstLevel {
+    /// Returns the level in words, with a remark after it.
+    fn words(&self, remark: &str) -> String {
+        let Condition {
+            name, factor, unit, ..
+        } = self.condition;
+        let middle = number::significant(0.5 * (self.level.from + self.level.to) * factor, 2);
+        let direction = match self.bias {
+            bias if bias > 0.5 => ", under-predicted there",
+            bias if bias < -0.5 => ", over-predicted there",
+            _ => "",
         };
-        let scatter = scatter_of_sizes(&groups, residuals.len());
-        if best.as_ref().is_none_or(|(least, _)| scatter < *least) {
-            let middle = 0.5 * (level.from + level.to) * factor;
-            let mean = of_level.iter().sum::<f64>() / of_level.len() as f64;
-            let direction = match mean / rms(of_level) {
-                m if m > 0.5 => ", under-predicted there",
-                m if m < -0.5 => ", over-predicted there",
-                _ => "",
-            };
-            let level = number::significant(middle, 2);
-            best = Some((scatter, format!("most at {name} {level}{unit}{direction}")));
-        }
+        format!("most at {name} {middle}{unit}{remark}{direction}")
     }
-    best.map(|(_, words)| words)
+}
+
+/// Returns the worst level of the condition that tells best where the errors are large: an angle of 90 degrees, and not the low load that a
+/// ploughing wheel has there. A condition that scatters follows from those that were set, and comes after them.
+fn standing_out(residuals: &[Residual]) -> Option<WorstLevel> {
+    let threshold = STANDS_OUT * rms(&residuals.iter().map(|(_, r)| *r).collect::<Vec<_>>());
+    let worst = CONDITIONS
+        .iter()
+        .filter_map(|condition| worst_level(condition, residuals, threshold));
+    worst.min_by(|a, b| {
+        let by_kind = a.is_scattered.cmp(&b.is_scattered);
+        by_kind.then(a.scatter.total_cmp(&b.scatter))
+    })
+}
+
+/// Returns the worst level of a condition; `None` if it has one level, or if no level's error is above the threshold.
+fn worst_level(condition: &'static Condition, residuals: &[Residual], threshold: f64) -> Option<WorstLevel> {
+    let value = condition.value;
+    let levels = few_levels(residuals.iter().map(|(row, _)| value(row)));
+    let of_level = |level: &Level| {
+        let of_level = residuals.iter().filter(|(row, _)| level.holds(value(row)));
+        of_level.map(|(_, r)| *r).collect()
+    };
+    let groups: Vec<Vec<f64>> = levels.iter().map(of_level).collect();
+    let worst = levels.iter().zip(&groups);
+    let (level, group) = worst.max_by(|a, b| rms(a.1).total_cmp(&rms(b.1)))?;
+    let values: Vec<f64> = residuals.iter().map(|(row, _)| value(row)).collect();
+    (levels.len() > 1 && rms(group) > threshold).then(|| WorstLevel {
+        condition,
+        level: *level,
+        is_scattered: condition.may_scatter && load_levels_of(&values).iter().all(|level| *level == 0),
+        scatter: scatter_of_sizes(&groups, residuals.len()),
+        bias: group.iter().sum::<f64>() / group.len() as f64 / rms(group),
+    })
 }
 
 fn rms(values: &[f64]) -> f64 {
@@ -147,6 +217,53 @@ mod tests {
             words.as_deref(),
             Some("most at a slip angle of 90 deg, under-predicted there")
         );
+        let rows: Vec<&ComparisonRow> = rows.iter().collect();
+        let beyond = |fitted: &[&ComparisonRow]| place_beyond(&rows, fitted);
+        assert_eq!(
+            beyond(&rows[..5]).as_deref(),
+            Some("most at a slip angle of 90 deg, beyond the fitted ones, under-predicted there")
+        );
+        assert_eq!((beyond(&rows), beyond(&[])), (None, None));
+    }
+
+    #[test]
+    fn a_load_that_scatters_is_named_only_where_nothing_that_was_set_tells_the_errors() {
+        let calibration = fixture::calibration();
+        let comparison = calibration.comparison();
+        let words = |runs: &[(f64, f64, f64)]| {
+            let row = |&(slip_angle_deg, wheel_load_n, measured): &(f64, f64, f64)| ComparisonRow {
+                slip_angle_deg,
+                wheel_load_n,
+                measured,
+                predicted: Some(0.0),
+                ..comparison.rows[0].clone()
+            };
+            let rows: Vec<ComparisonRow> = runs.iter().map(row).collect();
+            place(&rows.iter().collect::<Vec<_>>()).unwrap()
+        };
+        // The error follows the load more closely than the angle that lowers the load.
+        let scattered = [
+            (0.0, 24.0, 1.0),
+            (0.0, 24.0, -1.0),
+            (0.0, 24.0, 1.0),
+            (45.0, 21.0, 5.0),
+            (45.0, 21.0, -5.0),
+            (45.0, 18.0, 10.0),
+            (90.0, 18.0, 10.0),
+            (90.0, 18.0, -10.0),
+            (90.0, 16.0, 30.0),
+            (90.0, 16.0, 30.0),
+        ];
+        let angle = "most at a slip angle of 90 deg, under-predicted there";
+        assert_eq!(words(&scattered), angle);
+        let at_one_angle = scattered.map(|(_, load, error)| (0.0, load, error));
+        assert_eq!(
+            words(&at_one_angle),
+            "most at a load of 16 N, under-predicted there"
+        );
+        // Loads with a gap were set.
+        let set = scattered.map(|(angle, load, error)| (angle, if load < 17.0 { 8.0 } else { load }, error));
+        assert_eq!(words(&set), "most at a load of 8.0 N, under-predicted there");
     }
 
     #[test]

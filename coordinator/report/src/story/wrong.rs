@@ -114,10 +114,12 @@ impl<'a> Judge<'a> {
                 both.runs >= MIN_RUNS && both.model_rmse > RATIO * both.interpolation_rmse
             });
         let is_judged = is_known || is_beaten;
-        let rows: Vec<_> = rows_of(self.rows, usage)
-            .filter(|row| row.channel == channel)
-            .collect();
-        let place = || trend.or_else(|| pattern::place(&rows));
+        let [rows, fitted] = [usage, RunUse::Fit].map(|usage| {
+            let rows = rows_of(self.rows, usage).filter(|row| row.channel == channel);
+            rows.collect::<Vec<&ComparisonRow>>()
+        });
+        let beyond = || pattern::place_beyond(&rows, &fitted);
+        let place = || beyond().or(trend).or_else(|| pattern::place(&rows));
         Some(ChannelFailure {
             channel,
             usage,

@@ -12,9 +12,11 @@ use result::coverage_summary::CoverageSummary;
 use result::diagnostics::emulator::{emulator, numerical_noise};
 use result::error_summary::{BaselineSummary, CorrectedSummary, ErrorSummary};
 use result::finished_calibration::FinishedCalibration;
+use result::holdout_summary::HoldoutSummary;
 use result::parameter_summary::ParameterSummary;
 use result::table::coverage::Coverage;
 use result::table::fixed_sigma::FixedSigmas;
+use result::table::holdout_errors::HoldoutErrors;
 use result::table::row::rows_of;
 
 /// A line of the error ledger.
@@ -66,6 +68,9 @@ pub struct CalibrationSummary {
     pub corrected: CorrectedSummary,
     /// Errors of the posterior-mean prediction.
     pub error: ErrorSummary,
+    /// Errors of the posterior-mean prediction of the holdout runs by group; groups without a run are left out.
+    #[serde(default)]
+    pub holdout_groups: Vec<HoldoutSummary>,
     /// Noise standard deviation by channel: declared, or its posterior mean.
     pub noise_sd: BTreeMap<String, f64>,
     /// Share of measurements inside their 90 % interval.
@@ -121,6 +126,7 @@ impl CalibrationSummary {
             baseline: self.baseline.in_fixed_sigmas(sigmas),
             corrected: self.corrected.in_fixed_sigmas(sigmas),
             error: self.error.in_fixed_sigmas(sigmas),
+            holdout_groups: HoldoutSummary::all_in_fixed_sigmas(self.holdout_groups, sigmas),
             ..self
         }
     }
@@ -183,5 +189,6 @@ pub fn calibration_summary(calibration: &FinishedCalibration) -> Option<Calibrat
             fit: comparison.fit.clone(),
             holdout: comparison.holdout.clone(),
         },
+        holdout_groups: HoldoutSummary::all(HoldoutErrors::of_model(comparison.rows.iter())),
     })
 }

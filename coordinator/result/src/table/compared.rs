@@ -11,6 +11,7 @@ use super::correction::Corrections;
 use super::errors::ErrorTable;
 use super::fixed_sigma::FixedSigmas;
 use super::group::error_groups;
+use super::holdout_group::FittedConditions;
 use super::interpolation::Interpolations;
 use super::predictive::{Levels, predictive};
 use super::refusal::Refusal;
@@ -33,10 +34,13 @@ impl FinishedCalibration {
         let interpolations = self.interpolations();
         let levels = Levels::new(self);
         let corrections = Corrections::new(self);
+        let runs = &self.spec.experiment.runs;
+        let conditions = FittedConditions::new(self.spec.fit_runs.iter().map(|&i| &runs[i]).collect());
         let mut not_corrected = BTreeSet::new();
         let mut rows = Vec::new();
-        for (i, run) in self.spec.experiment.runs.iter().enumerate() {
+        for (i, run) in runs.iter().enumerate() {
             let refused = self.refusal(i);
+            let holdout_group = (run.usage == RunUse::Holdout).then(|| conditions.group(run));
             for channel in Channel::ALL {
                 let Some(measured) = run.measured[channel.index()] else {
                     continue;
@@ -52,6 +56,7 @@ impl FinishedCalibration {
                 rows.push(ComparisonRow {
                     run: run.name.clone(),
                     usage: run.usage,
+                    holdout_group,
                     wheel: run.wheel.clone(),
                     slip: run.slip,
                     wheel_load_n: run.wheel_load_n,

@@ -6,6 +6,7 @@ use shared::experiment::RunUse;
 use super::coverage::Coverage;
 use super::errors::ErrorTable;
 use super::fixed_sigma::FixedSigmas;
+use super::holdout_errors::HoldoutErrors;
 use super::row::rows_of;
 use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
@@ -34,6 +35,8 @@ pub struct LedgerRow {
     pub worse: Vec<Channel>,
     /// Coverage of the 90 % intervals.
     pub coverage: Option<Coverage>,
+    /// Errors on the groups of the holdout runs; empty for the fitted runs.
+    pub groups: Vec<HoldoutErrors>,
 }
 
 /// The errors in noise standard deviations above which intervals of that noise would hold few of the measurements.
@@ -80,6 +83,10 @@ impl Study {
                     usage,
                     worse: Channel::ALL.into_iter().filter(is_worse).collect(),
                     coverage: Coverage::count(rows_of(&comparison.rows, usage)),
+                    groups: HoldoutErrors::of_model(rows_of(&comparison.rows, usage))
+                        .into_iter()
+                        .map(|group| group.in_fixed_sigmas(&sigmas))
+                        .collect(),
                     errors,
                 })
             };

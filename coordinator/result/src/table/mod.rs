@@ -8,6 +8,7 @@
 //! - `correction`: predictions corrected by the model's errors in other conditions (`corrected`); `conditions`: coordinates of the rig.
 //! - `combination`: the average over the models of a study (`combined_row`) and the measurements alone (`without_model`).
 //! - `prediction`: all predictions, run by run.
+//! - `holdout_group`: places of holdout runs among the fitted conditions; `holdout_errors`: errors there.
 //! - `coverage`: measurements inside their intervals. `readings`: errors of plates and rings.
 //! - `refusal`: draws at which the model refuses a run. `error_model`: the error model in words. `posterior`: draws as a table.
 
@@ -23,6 +24,8 @@ pub mod error_model;
 pub mod errors;
 pub mod fixed_sigma;
 pub mod group;
+pub mod holdout_errors;
+pub mod holdout_group;
 pub mod interpolation;
 pub mod ledger;
 pub mod level;

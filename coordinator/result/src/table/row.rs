@@ -4,6 +4,7 @@ use shared::channel::Channel;
 use shared::experiment::RunUse;
 
 use super::corrected::Corrected;
+use super::holdout_group::HoldoutGroup;
 use super::interpolation::InterpolatedOver;
 use super::refusal::Refusal;
 
@@ -16,6 +17,10 @@ pub struct ComparisonRow {
     #[serde(rename = "use")]
     #[schema(value_type = String)]
     pub usage: RunUse,
+    /// Place of a holdout run among the fitted conditions: `in_levels`, `between_levels` or `beyond`; null for a fitted run.
+    #[serde(default)]
+    #[schema(value_type = Option<String>)]
+    pub holdout_group: Option<HoldoutGroup>,
     /// Name of the wheel.
     pub wheel: String,
     /// Slip of the run.

@@ -66,7 +66,7 @@ impl Axis {
 
     /// Returns the conditions that tell runs apart: slip, slip angle, load, and the speed that was set, which is that of sled or rim,
     /// whichever has fewer values.
-    pub(super) fn distinguishing(runs: &[&TestRun]) -> [Axis; 4] {
+    pub(crate) fn distinguishing(runs: &[&TestRun]) -> [Axis; 4] {
         let speed = match Axis::RimSpeed.count(runs) < Axis::SledSpeed.count(runs) {
             true => Axis::RimSpeed,
             false => Axis::SledSpeed,

@@ -5,5 +5,5 @@
 mod axis;
 mod varied;
 
-pub(crate) use axis::ALIKE_LOADS;
+pub(crate) use axis::{ALIKE_LOADS, Axis};
 pub(crate) use varied::{Conditions, repeated};
