@@ -138,8 +138,8 @@ function beside(/** @type {Study} */ study, /** @type {LedgerLine[]} */ lines) {
       holdout: combined?.holdout,
       inside: combined?.coverage90.holdout,
       groups: combined?.holdout_groups,
-      meaning: t`All, combined: the corrected models and the measurements alone together, weighed by how well each predicts
-        left-out levels of the fitted runs.`,
+      meaning: t`All, combined: the corrected models and the measurements alone together, weighed by how well
+        each predicts left-out levels of the fitted runs.`,
     },
     {
       name: t`interpolation`,
