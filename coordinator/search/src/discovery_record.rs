@@ -141,14 +141,14 @@ pub(super) fn discovery_record(
     record
 }
 
-/// Returns the most probable effect of an open verdict, if a set with it is a detection and no parameter contradicts its prior.
+/// Returns the most probable effect of an open verdict, if a set with it is a detection and no parameter of the model with it contradicts
+/// its prior. A strength of another effect, which is not added, may.
 fn leading(models: &SearchModels, conclusion: &Conclusion) -> Option<Extension> {
     let is_open = matches!(
         conclusion.verdict,
         SearchVerdict::Undecided | SearchVerdict::Class(_)
     );
-    let has_objection = conclusion.implausible.or(conclusion.held_back).is_some();
-    if !is_open || has_objection || !conclusion.unsupported_noise.is_empty() {
+    if !is_open || conclusion.held_back.is_some() || !conclusion.unsupported_noise.is_empty() {
         return None;
     }
     let effects = conclusion
@@ -167,7 +167,14 @@ fn leading(models: &SearchModels, conclusion: &Conclusion) -> Option<Extension> 
     };
     let entry = models.entry(candidate).filter(|entry| entry.not_tried.is_none());
     let entry = entry.filter(|_| conclusion.sets.iter().any(is_detected))?;
-    Some(entry.effect.extension.clone())
+    let implausible = conclusion.implausible;
+    let implausible = implausible.and_then(|(k, _)| parameter_name(models, conclusion, k));
+    let is_in_model = |parameter: &String| {
+        let mut base = models.base.parameters.iter();
+        entry.names.contains(parameter) || base.any(|p| p.name == *parameter)
+    };
+    let has_objection = implausible.iter().any(is_in_model);
+    (!has_objection).then(|| entry.effect.extension.clone())
 }
 
 /// Lists the effects in the place of effects of the base.
