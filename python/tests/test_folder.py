@@ -98,8 +98,9 @@ def test_a_study_that_asks_grows_by_the_effect_that_is_missing(asked: Asked, tmp
     told = asked.told
     shutil.copytree(asked.folder, tmp_path / "out")
     study = grouser.Study.load(tmp_path / "out")
-    shares = [progress.share for progress in told if progress.share is not None]
+    shares = [progress.share for progress in told if "of this search" in progress.text]
     assert shares and shares == sorted(shares) and 0 <= shares[0] <= shares[-1] <= 1
+    assert any("of this calibration" in progress.text for progress in told)
     missing = study.missing_effect
     assert missing is not None and not missing.is_added
     with pytest.raises(grouser.GrouserError, match=r'unknown effect "janosi_hanamotto".*janosi_hanamoto'):

@@ -1,6 +1,6 @@
 //! The record of a search: its conclusion in names, as it is stored.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use discovery::{
     Conclusion, DETECTED, EvidenceMethod, FitChiSquare, NAMED, OutsideLaw, RankedEffect, Replacement,
@@ -27,6 +27,9 @@ use super::rig_errors::rig_errors;
 
 /// A law outside the library with more probability is in the credible set.
 const MIN_CREDIBLE: f64 = 0.05;
+
+/// A strength farther out in its prior is no basis of predictions \[sds\].
+const MAX_PRIOR_SDS: f64 = 5.0;
 
 /// Makes the record of a conclusion.
 pub(super) fn discovery_record(
@@ -65,14 +68,20 @@ pub(super) fn discovery_record(
         .filter(|e| e.in_credible_set && e.name != NONE && e.name != NOT_IN_LIBRARY)
         .map(|e| e.name.as_str())
         .collect();
+    let separated = conclusion.next_runs.iter().flat_map(|run| &run.separates);
+    let laws: BTreeSet<&Vec<usize>> = separated
+        .filter(|effects| matches!(effects.as_slice(), [k] if *k >= models.library.len()))
+        .collect();
+    // Several laws differ in their places.
+    let laws = laws.len();
     let next_runs = conclusion.next_runs.iter().filter_map(|run| {
         let condition = models.design.get(run.run)?;
-        let is_law = |effects: &[usize]| matches!(effects, [k] if *k >= models.library.len());
-        let laws = run.separates.iter().filter(|effects| is_law(effects)).count();
         let words = |effects: &Vec<usize>| match effects.as_slice() {
             [] => NONE.to_owned(),
-            // Several laws differ in their names.
-            law if is_law(law) && laws == 1 => NOT_IN_LIBRARY.to_owned(),
+            [k] if *k >= models.library.len() => match models.place(*k).filter(|_| laws > 1) {
+                Some(place) => place,
+                None => NOT_IN_LIBRARY.to_owned(),
+            },
             effects => names(effects).join(" + "),
         };
         Some(NextRun {
@@ -141,8 +150,9 @@ pub(super) fn discovery_record(
     record
 }
 
-/// Returns the most probable effect of an open verdict, if a set with it is a detection and no parameter of the model with it contradicts
-/// its prior. A strength of another effect, which is not added, may.
+/// Returns the most probable effect of an open verdict, for the sake of predictions: it is in the 95 % set, is more probable than that
+/// nothing is missing, and is in a set that is a detection. Neither its strength nor a parameter of the searched model contradicts its
+/// prior.
 fn leading(models: &SearchModels, conclusion: &Conclusion) -> Option<Extension> {
     let is_open = matches!(
         conclusion.verdict,
@@ -151,12 +161,12 @@ fn leading(models: &SearchModels, conclusion: &Conclusion) -> Option<Extension> 
     if !is_open || conclusion.held_back.is_some() || !conclusion.unsupported_noise.is_empty() {
         return None;
     }
-    let effects = conclusion
-        .ranking
-        .effects
-        .iter()
-        .filter(|e| e.candidate.is_some());
-    let first = effects.reduce(|best, e| if e.probability > best.probability { e } else { best })?;
+    let in_base = |(parameter, _): &(usize, f64)| *parameter < models.base.parameters.len();
+    if conclusion.implausible.as_ref().is_some_and(in_base) {
+        return None;
+    }
+    let all = conclusion.ranking.effects.iter();
+    let first = all.reduce(|best, e| if e.probability > best.probability { e } else { best })?;
     let candidate = first.candidate?;
     let is_detected = |set: &WeighedSet| {
         let has = set
@@ -165,16 +175,10 @@ fn leading(models: &SearchModels, conclusion: &Conclusion) -> Option<Extension> 
             .is_some_and(|effects| effects.contains(&candidate));
         has && set.log_bayes_factor / conclusion.misfit > DETECTED
     };
+    let is_plausible = first.is_credible && first.prior_sds.abs() <= MAX_PRIOR_SDS;
     let entry = models.entry(candidate).filter(|entry| entry.not_tried.is_none());
-    let entry = entry.filter(|_| conclusion.sets.iter().any(is_detected))?;
-    let implausible = conclusion.implausible;
-    let implausible = implausible.and_then(|(k, _)| parameter_name(models, conclusion, k));
-    let is_in_model = |parameter: &String| {
-        let mut base = models.base.parameters.iter();
-        entry.names.contains(parameter) || base.any(|p| p.name == *parameter)
-    };
-    let has_objection = implausible.iter().any(is_in_model);
-    (!has_objection).then(|| entry.effect.extension.clone())
+    let entry = entry.filter(|_| is_plausible && conclusion.sets.iter().any(is_detected))?;
+    Some(entry.effect.extension.clone())
 }
 
 /// Lists the effects in the place of effects of the base.

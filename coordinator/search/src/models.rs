@@ -247,6 +247,13 @@ impl SearchModels {
         entry.map_or(String::new(), |entry| entry.effect.name.clone())
     }
 
+    /// Returns the place of a law that a candidate describes: `shear_z`; `None` for an effect or a formula.
+    pub(super) fn place(&self, index: usize) -> Option<String> {
+        let mut laws = self.laws.iter().flat_map(|law| law.entries().map(move |_| law));
+        let law = laws.nth(index.checked_sub(self.library.len())?)?;
+        Some(law.dependence.name())
+    }
+
     /// Makes the variants of queries that were not asked before; hundreds in a round of a search, so on all cores.
     ///
     /// # Errors

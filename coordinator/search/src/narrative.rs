@@ -300,16 +300,12 @@ fn verdict(
             )
         }
         (SearchVerdict::NotInLibrary, Some(law)) => format!(
-            "not in the library: the missing law acts on {} and depends on {}, in the form of {} {} ({:.1} nats over {kind}; left-out levels are predicted better by {:.1} nats){}{}{}",
-            law.acts_on.replace('_', " "),
-            law.depends_on.replace('_', " "),
+            "not in the library: the missing law {}, in the form of {} {} ({:.1} nats over {kind}; left-out levels are predicted better by {:.1} nats){}{}",
+            place(law),
             if law.form.starts_with('i') { "an" } else { "a" },
             law.form.replace('_', " "),
             law.log_bayes_factor,
             law.left_out_nats[0],
-            law.places_alike().map_or(String::new(), |places| format!(
-                "; these data do not tell where it acts: {places}"
-            )),
             law.forms_alike()
                 .map_or(String::new(), |alike| format!("; the forms {alike} fit alike")),
             formulas(models, conclusion, law)
@@ -323,6 +319,19 @@ fn verdict(
             ),
             _ => undecided(effects),
         },
+    }
+}
+
+/// Writes where a law acts: `acts on shear and depends on z`, or all places that these data do not tell apart.
+fn place(law: &Outside) -> String {
+    let [acts_on, depends_on] = [&law.acts_on, &law.depends_on].map(|name| name.replace('_', " "));
+    match law.places_alike() {
+        None => format!("acts on {acts_on} and depends on {depends_on}"),
+        Some(places) => {
+            format!(
+                "changes {places}, which these data do not tell apart; it is shown for {acts_on} by {depends_on}"
+            )
+        }
     }
 }
 

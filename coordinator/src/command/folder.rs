@@ -331,7 +331,7 @@ async fn parts(study: i64, service: &Service) -> anyhow::Result<Parts> {
     let spec = service.spec_of(first).await?;
     Ok(match spec.discovery.apply {
         Apply::Off => Parts::Calibrations(rows.len().max(spec.models)),
-        Apply::Ask => Parts::WithSearch,
-        Apply::Auto | Apply::Leading => Parts::Rounds,
+        Apply::Ask if spec.models == 1 => Parts::WithSearch,
+        Apply::Ask | Apply::Auto | Apply::Leading => Parts::Rounds,
     })
 }

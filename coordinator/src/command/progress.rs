@@ -20,7 +20,7 @@ pub(super) enum Parts {
     Calibrations(usize),
     /// A calibration and a search, which takes the longer time by a factor that nobody knows.
     WithSearch,
-    /// Rounds of a calibration and a search, until a search names nothing.
+    /// Calibrations and searches in a number that depends on what they find.
     Rounds,
 }
 

@@ -40,7 +40,8 @@ pub fn most_probable(log_evidences: impl Iterator<Item = Option<f64>>) -> Option
 ///
 /// A failed or cancelled member ends it. With `ask` the last calibration of the ledger is searched, and the user decides. With `auto` it is
 /// extended by the effect that its search names, up to the allowed number of effects beyond those of the first member; an effect that was
-/// dropped is neither added nor dropped again. With `leading` the study adds the leading candidate of a search that names none, too. Where a search names an effect in the place of one that the study added, that one is dropped
+/// dropped is neither added nor dropped again. With `leading` the study adds the leading candidate of a search that names none, too. Where
+/// a search names an effect in the place of one that the study added, that one is dropped
 /// and the other is then added, without a search between them. If the job compares several models, the study continues with the model of largest evidence.
 ///
 /// # Arguments

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from typing import Any
 
 # What `coordinator run` writes where it has no terminal: `31 %, about 6 s left: sand, stage 3 of about 10`.
-# Where a search is among the parts: `31 % of this search, further rounds may follow: sand, search for a missing effect`.
-LINE = re.compile(r"^\s*(\d+) %( of this \w+)?(?:, [^:]*)?: ")
+# Where a search is among the parts, the share is that of the present part:
+# `31 % of this search, further rounds may follow: sand, search for a missing effect`.
+LINE = re.compile(r"^\s*(\d+) %(?: of this \w+)?(?:, [^:]*)?: ")
 
 
 @dataclass(frozen=True)
@@ -20,7 +21,8 @@ class Progress:
     """Where a study stands."""
 
     text: str
-    #: Share of the study that is done, from 0 to 1; ``None`` where it cannot be told.
+    #: Share that is done, from 0 to 1, of the study or, where a search is among its parts, of the present calibration or
+    #: search; ``None`` where it cannot be told.
     share: float | None = None
 
 
@@ -32,7 +34,7 @@ def of_line(line: str) -> Progress | None:
     match = LINE.match(line)
     if match is None:
         return None
-    return Progress(line.strip(), None if match.group(2) else int(match.group(1)) / 100)
+    return Progress(line.strip(), int(match.group(1)) / 100)
 
 
 def of_status(status: Mapping[str, Any]) -> Progress:

@@ -53,12 +53,12 @@ pub struct TrialScore {
     pub is_covered: bool,
     /// The number of classes in the 95 % set.
     pub set_size: usize,
-    /// Whether the quantity of the claimed law, or of one of its places where the data do not tell them apart, is right.
+    /// Whether the quantity of the claimed law is right.
     pub quantity: bool,
-    /// Whether quantity and variable are, of the claimed law or of one of these places.
+    /// Whether the quantity and the variable of the claimed law are right.
     pub dependence: bool,
-    /// Number of the places that are stated; 0 without a law.
-    pub places: usize,
+    /// Whether they are of one of the places that are stated, where the data do not tell them apart.
+    pub is_in_places: bool,
     /// Whether the best combination is the truth, up to classes.
     pub is_exact: bool,
     pub held_out: HeldOut,
@@ -152,6 +152,8 @@ impl TrialScore {
             SearchVerdict::NotInLibrary => Some(TrialClass::Outside),
             SearchVerdict::NothingDetectable | SearchVerdict::Undecided => None,
         };
+        let claimed_law = conclusion.outside.as_ref();
+        let claimed_law = claimed_law.map(|law| task.laws[law.law].curve.name.as_str());
         let stated = comparison.stated_laws();
         let accepts = |is_right: &dyn Fn(&str) -> bool| stated.iter().any(|law| is_right(law));
         let combination: Vec<_> = conclusion.combination.iter().map(|k| Some(*k)).collect();
@@ -174,9 +176,9 @@ impl TrialScore {
             stated: probability,
             is_covered: credible.iter().any(|class| is_truth(*class)),
             set_size: credible.len(),
-            quantity: accepts(&|law| truth.has_quantity(law)),
-            dependence: accepts(&|law| truth.has_dependence(law)),
-            places: stated.len(),
+            quantity: claimed_law.is_some_and(|law| truth.has_quantity(law)),
+            dependence: claimed_law.is_some_and(|law| truth.has_dependence(law)),
+            is_in_places: accepts(&|law| truth.has_dependence(law)),
             is_exact: truth.law.is_none() && is_same(conclusion, &hidden, &combination),
             held_out: facts.held_out,
             candidates: task.library.len(),

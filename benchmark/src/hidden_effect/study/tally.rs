@@ -130,10 +130,10 @@ impl Tally<'_> {
             ),
             share("  and variable", &claimed, |x| x.dependence, [0.85, 0.95]),
             share(
-                "  and alone",
+                "  or one of the places that are stated",
                 &claimed,
-                |x| x.dependence && x.places == 1,
-                [0.50, 0.80],
+                |x| x.is_in_places,
+                [0.90, 0.98],
             ),
             Target::ratio("  held-out error after over before", &ratios, [0.35, 0.20]),
         ]

@@ -16,6 +16,8 @@ const OPEN: f64 = 0.005;
 /// could be made costs several of the fitted runs.
 const MAX_OPEN: usize = 12;
 const MAX_OPEN_OF_ROUGH: usize = 4;
+/// Maximum number of laws alone among them, one for each place.
+const MAX_PLACES: usize = 4;
 /// Less probable sets are not compared by prediction.
 const LEADING: f64 = 0.01;
 /// Maximum number of sets that predict left-out levels.
@@ -469,10 +471,11 @@ impl Weighing {
             }
             Some(_) => Vec::new(),
         });
-        open.filter(|law| law.probability > OPEN)
+        open
     }
 
-    /// Returns each law alone with its share of a probability, in proportion to its weight; none if no law was cross-validated.
+    /// Returns the laws alone with the largest shares of a probability, in proportion to their weights: those that are open, and at least
+    /// one; none if no law was cross-validated.
     fn laws_alone<'a>(&self, hypotheses: &'a Hypotheses, probability: f64) -> Vec<OpenHypothesis<'a>> {
         let scan = hypotheses.laws.iter().filter(|scan| scan.confirmed.is_some());
         let laws = scan.flat_map(|scan| {
@@ -482,12 +485,16 @@ impl Weighing {
             let shares = weights.map(move |(_, weight)| libm::exp(weight - of_all));
             scan.laws.iter().zip(shares)
         });
-        laws.map(|(law, share)| OpenHypothesis {
+        let open = laws.map(|(law, share)| OpenHypothesis {
             effects: vec![law.candidate],
             probability: probability * share,
             fit: &law.fit,
-        })
-        .collect()
+        });
+        let mut open: Vec<OpenHypothesis> = open.collect();
+        open.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+        let count = open.iter().filter(|law| law.probability > OPEN).count();
+        open.truncate(count.clamp(1, MAX_PLACES));
+        open
     }
 }
 

@@ -72,7 +72,7 @@ export function LawChart({ law, name, add }) {
   `;
 }
 
-/** Where the law may act, if these data do not tell it; a record of an earlier version has no places. */
+/** The places where the law may act, if there are several; a record of an earlier version has none. */
 function Places(/** @type {{ places: Schemas["LawPlace"][] }} */ { places }) {
   if (places.length < 2) return null;
   return html`
@@ -99,7 +99,7 @@ function Places(/** @type {{ places: Schemas["LawPlace"][] }} */ { places }) {
         </tbody>
       </table>
     </div>
-    <p class="note">Probabilities are among all laws outside of the library. Those listed have 95 % together.</p>
+    <p class="note">Probabilities are among all laws outside of the library. Those listed have at least 95 % together.</p>
   `;
 }
 

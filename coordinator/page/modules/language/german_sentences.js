@@ -109,8 +109,8 @@ export const SENTENCES = {
     "Ein Rechner hat alle {0} Ergebnisse gerechnet, darum wurde keines mit dem eines anderen verglichen.",
   "Point at an explanation: its predictions appear over the data before anything is computed; a click on its name keeps them.":
     "Zeigen Sie auf eine Erklärung: ihre Vorhersagen erscheinen über den Daten, bevor etwas gerechnet wird; ein Klick auf den Namen hält sie fest.",
-  "Probabilities are among all laws outside of the library. Those listed have 95 % together.":
-    "Die Wahrscheinlichkeiten gelten unter allen Gesetzen außerhalb der Bibliothek. Die aufgeführten haben zusammen 95 %.",
+  "Probabilities are among all laws outside of the library. Those listed have at least 95 % together.":
+    "Die Wahrscheinlichkeiten gelten unter allen Gesetzen außerhalb der Bibliothek. Die aufgeführten haben zusammen mindestens 95 %.",
   "Probabilities compare these {0} models alone, from equal prior odds. {1}. Noise sds: error over the noise; a model that is right has about 1. p of chi-square: how often noise alone leaves so large residuals of the fitted runs; if that of the most probable model is below 0.01, the answer is “none of these”.":
     "Die Wahrscheinlichkeiten vergleichen nur diese {0} Modelle, von gleichen Prior-Chancen aus. {1}. × Rauschen: Fehler durch Rauschen; ein richtiges Modell hat etwa 1. p von Chi-Quadrat: wie oft Rauschen allein so große Abweichungen der angepassten Fahrten lässt; liegt es beim wahrscheinlichsten Modell unter 0,01, ist die Antwort „keines von diesen“.",
   "regions of {0} % of the posterior; rank correlation {1}": "Gebiete von {0} % des Posteriors; Rangkorrelation {1}",

@@ -1,7 +1,7 @@
 //! The effects that the study added to a model, with the verdicts of the searches and the improvement of the error.
 
 use job::FreeParameter;
-use record::{Discovery, NOT_IN_LIBRARY, NextRun, addition_name, effect_of};
+use record::{Discovery, NOT_IN_LIBRARY, NextRun, Verdict, addition_name, effect_of};
 
 use super::explanation::{Alternative, law_places, open, p, parts, run_words, summary};
 use result::discovery::DiscoveryRound;
@@ -21,6 +21,8 @@ pub struct AddedEffect {
     pub summary: Option<String>,
     /// Its parameters in the calibration, in the order of the job.
     pub strengths: Vec<Strength>,
+    /// Whether the verdict of a search names it. Another effect was added by hand, or for the sake of predictions.
+    pub is_named: bool,
     /// Probability that a search gave it; null if no search named it or left it open.
     pub probability: Option<f64>,
     /// The calibration that was searched.
@@ -72,11 +74,18 @@ impl AddedEffect {
     /// Describes the effect in a few words: `slip_sinkage was missing (P 0.96) and is added`.
     pub(super) fn short(&self) -> String {
         let name = &self.name;
-        match (self.probability, self.rivals.is_empty()) {
-            (Some(probability), true) => format!("{name} was missing ({}) and is added", p(probability)),
-            (Some(probability), false) => format!("{name} ({}) is added", p(probability)),
-            (None, _) => format!("{name} was added by hand"),
+        match self.probability {
+            Some(probability) if self.is_told() => {
+                format!("{name} was missing ({}) and is added", p(probability))
+            }
+            Some(probability) => format!("{name} ({}) is added", p(probability)),
+            None => format!("{name} was added by hand"),
         }
+    }
+
+    /// Returns whether a search names it and leaves nothing open.
+    fn is_told(&self) -> bool {
+        self.is_named && self.rivals.is_empty()
     }
 
     /// Describes the rival explanations: `slip_softened_pressure (P 0.32) in place of slip_sinkage cannot be excluded; slip 0.60 under
@@ -128,6 +137,7 @@ pub(crate) fn added(study: &Study, calibration: &FinishedCalibration) -> Vec<Add
             strengths: strengths(calibration, &effect_parts),
             held_out_noise_sds: held_out_errors(study, calibration, &effect_parts),
             name,
+            is_named: false,
             probability: None,
             searched: None,
             rivals: Vec::new(),
@@ -200,13 +210,16 @@ fn judged(record: &Discovery, left: &[String]) -> Option<Alternative> {
             probability,
         }
     });
+    let leading = record.leading.as_ref().map(addition_name);
+    let leading = leading.and_then(|name| record.effects.iter().find(|e| e.name == name));
     let is_there = |explanation: &Alternative| {
         let parts = parts(&explanation.name);
         !parts.is_empty() && parts.iter().all(|part| left.contains(part))
     };
     let explanations = named
         .into_iter()
-        .chain(open(record).into_iter().map(Alternative::from));
+        .chain(open(record).into_iter().map(Alternative::from))
+        .chain(leading.map(Alternative::from));
     let there: Vec<Alternative> = explanations.filter(is_there).collect();
     let size = |explanation: &Alternative| parts(&explanation.name).len();
     let largest = there.iter().map(size).max()?;
@@ -239,6 +252,7 @@ fn of_search(
         summary: judged.summary.clone(),
         strengths: Vec::new(),
         name: judged.name.clone(),
+        is_named: matches!(round.record.verdict, Verdict::Named | Verdict::NotInLibrary),
         probability: Some(judged.probability),
         searched: Some(round.calibration),
         deciding_run: round
@@ -304,9 +318,7 @@ pub(super) fn unseen_runs(
     calibration: &FinishedCalibration,
     added: &[AddedEffect],
 ) -> Option<String> {
-    let is_named = added
-        .iter()
-        .any(|effect| effect.probability.is_some() && effect.rivals.is_empty());
+    let is_named = added.iter().any(AddedEffect::is_told);
     let (_, error) = held_out(study, calibration).filter(|_| is_named)?;
     (error > MAX_HELD_OUT_ERROR).then(|| {
         format!(

@@ -121,7 +121,7 @@ fn table(study: &Study, lines: &[LedgerLine], mut predictions: Vec<Prediction>) 
         .fold(MODEL, usize::max);
     let mut table = Table::<Row>::new()
         .left(width, "root mean sq. error", |row| match row.runs {
-            Runs::Of(_) => row.model.to_owned(),
+            Runs::Used(_) => row.model.to_owned(),
             Runs::Count(_) => format!("  {}", row.model),
         })
         .left(8, "runs", |row| row.runs.words());
@@ -210,7 +210,7 @@ impl<'a> Row<'a> {
     fn fitted(model: &'a str, row: &'a LedgerRow) -> Self {
         Row {
             model,
-            runs: Runs::Of(row.usage),
+            runs: Runs::Used(row.usage),
             errors: Some(&row.errors),
             worse: &row.worse,
             coverage: row.coverage.as_ref(),
@@ -221,7 +221,7 @@ impl<'a> Row<'a> {
     fn held_out(model: &'a str, errors: &'a ErrorTable) -> Self {
         Row {
             model,
-            runs: Runs::Of(RunUse::Holdout),
+            runs: Runs::Used(RunUse::Holdout),
             errors: Some(errors),
             worse: &[],
             coverage: None,
@@ -244,7 +244,7 @@ impl<'a> Row<'a> {
 #[derive(Clone, Copy)]
 enum Runs {
     /// The fitted or the holdout runs.
-    Of(RunUse),
+    Used(RunUse),
     /// A number of holdout runs.
     Count(usize),
 }
@@ -252,8 +252,8 @@ enum Runs {
 impl Runs {
     fn words(self) -> String {
         match self {
-            Runs::Of(RunUse::Fit) => "fit".into(),
-            Runs::Of(RunUse::Holdout) => "held out".into(),
+            Runs::Used(RunUse::Fit) => "fit".into(),
+            Runs::Used(RunUse::Holdout) => "held out".into(),
             Runs::Count(count) => number::count(count, "run"),
         }
     }
@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn held_out_runs_of_one_group_have_no_row_of_their_own() {
+    fn held_out_runs_of_one_group_have_no_further_row() {
         let text = ledger(&Study::from(fixture::calibration()));
         assert!(text.contains("held out") && !text.contains("levels"), "{text}");
     }

@@ -1,8 +1,8 @@
 //! The block `discovery` of `summary.json`: all searches of a study in one summary.
 
 use record::{
-    ChiSquare, Discovery, JudgedEffect, JudgedSet, NextRun, NotTried, Outside, RemainingMisfit, Verdict,
-    effect_of, parts_of,
+    ChiSquare, Discovery, Extension, JudgedEffect, JudgedSet, NextRun, NotTried, Outside, RemainingMisfit,
+    Verdict, effect_of, parts_of,
 };
 
 use super::round::DiscoveryRound;
@@ -59,6 +59,16 @@ impl DiscoverySummary {
             .map(|round| round.record.clone().without_curves())
             .collect();
         let (first, last) = (records.first()?, records.last()?);
+        let has = |extension: Option<&Extension>, part: &String| {
+            extension.is_some_and(|e| parts_of(e).contains(part))
+        };
+        let is_named = |part: &String| records.iter().any(|r| has(r.extension.as_ref(), part));
+        let is_leading = |part: &String| records.iter().any(|r| has(r.leading.as_ref(), part));
+        // What was added for the sake of predictions is not chosen as a name.
+        let added: Vec<String> = added
+            .into_iter()
+            .filter(|part| is_named(part) || !is_leading(part))
+            .collect();
         // Take the last search with a detection, because further runs may have added information since the first.
         let named = records.iter().find(|record| {
             record

@@ -117,10 +117,10 @@ mod tests {
             (HoldoutGroup::InLevels, 1, (3.0, 1), (0, 1)),
             (HoldoutGroup::Beyond, 3, (12.5_f64.sqrt(), 2), (1, 2)),
         ];
-        for (found, expected) in figures.zip(expected) {
-            assert!((found.2.0 - expected.2.0).abs() < 1e-9, "{found:?}");
+        for (figure, expected) in figures.zip(expected) {
+            assert!((figure.2.0 - expected.2.0).abs() < 1e-9, "{figure:?}");
             assert_eq!(
-                (found.0, found.1, found.2.1, found.3),
+                (figure.0, figure.1, figure.2.1, figure.3),
                 (expected.0, expected.1, expected.2.1, expected.3)
             );
         }
