@@ -458,7 +458,7 @@ impl Weighing {
     /// none; otherwise each that may act counts by its share, so that further runs tell where the law acts.
     fn open_laws<'a>(&self, hypotheses: &'a Hypotheses) -> impl Iterator<Item = OpenHypothesis<'a>> {
         let sets = self.sets.iter().filter(|set| set.probability > OPEN);
-        let open = sets.flat_map(|set| match &set.effects {
+        sets.flat_map(|set| match &set.effects {
             None => self.laws_alone(hypotheses, set.probability),
             Some(effects) if self.leadership().leader(effects) == Some(Leader::Law) => {
                 let combination = hypotheses.combination(effects);
@@ -470,8 +470,7 @@ impl Weighing {
                 open.into_iter().collect()
             }
             Some(_) => Vec::new(),
-        });
-        open
+        })
     }
 
     /// Returns the laws alone with the largest shares of a probability, in proportion to their weights: those that are open, and at least

@@ -99,7 +99,9 @@ function Places(/** @type {{ places: Schemas["LawPlace"][] }} */ { places }) {
         </tbody>
       </table>
     </div>
-    <p class="note">Probabilities are among all laws outside of the library. Those listed have at least 95 % together.</p>
+    <p class="note">
+      Probabilities are among all laws outside of the library. Those listed have at least 95 % together.
+    </p>
   `;
 }
 
