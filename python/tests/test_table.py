@@ -51,7 +51,7 @@ def test_progress_is_read_from_the_lines_of_the_program() -> None:
     assert told == grouser.Progress("31 %, about 6 s left: sand, stage 3 of about 10", 0.31)
     assert _progress.of_line(" 6 %: sand, stage 1") == grouser.Progress("6 %: sand, stage 1", 0.06)
     part = "31 % of this search, further rounds may follow: sand, search for a missing effect (combines effects)"
-    assert _progress.of_line(part) == grouser.Progress(part, None)
+    assert _progress.of_line(part) == grouser.Progress(part, 0.31)
     assert _progress.of_line("2 local workers simulated 38.7 % of 3.8 s") is None
 
 
