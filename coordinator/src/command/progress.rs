@@ -13,7 +13,7 @@ const MIN_SHARE: f64 = 0.03;
 /// The largest share that the display shows of a study, because the number of its members is a guess.
 const MAX_SHARE: f64 = 0.99;
 
-/// What is known of the parts of a study when its display begins.
+/// The parts of a study, as far as they are known when its display begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Parts {
     /// The number of calibrations.

@@ -64,7 +64,7 @@ impl DiscoverySummary {
         };
         let is_named = |part: &String| records.iter().any(|r| has(r.extension.as_ref(), part));
         let is_leading = |part: &String| records.iter().any(|r| has(r.leading.as_ref(), part));
-        // What was added for the sake of predictions is not chosen as a name.
+        // An effect that was added for the sake of predictions is no name that the study chose.
         let added: Vec<String> = added
             .into_iter()
             .filter(|part| is_named(part) || !is_leading(part))
