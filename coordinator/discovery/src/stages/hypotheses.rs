@@ -188,6 +188,19 @@ impl LawScan {
     }
 }
 
+impl LawScan {
+    /// Returns each law with its share of the mean evidence of all.
+    ///
+    /// # Arguments
+    /// - `possible`, `misfit`: as of [`Self::log_weights`].
+    pub(super) fn shares(&self, possible: usize, misfit: f64) -> impl Iterator<Item = (&FittedLaw, f64)> {
+        let weights = self.log_weights(possible, misfit);
+        let of_all = log_sum_exp(weights.clone().map(|(_, weight)| weight));
+        let shares = weights.map(move |(_, weight)| libm::exp(weight - of_all));
+        self.laws.iter().zip(shares)
+    }
+}
+
 impl Hypotheses {
     pub(super) fn new(candidates: Vec<Candidate>) -> Self {
         Self {

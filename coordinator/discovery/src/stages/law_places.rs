@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use crate::laplace::evidence::log_sum_exp;
 use crate::stages::hypotheses::Hypotheses;
 use crate::stages::weighing::Weighing;
 use crate::task::SearchTask;
@@ -20,16 +19,15 @@ impl LawPlaces {
     /// share of that mean.
     pub(super) fn new(task: &SearchTask, hypotheses: &Hypotheses, weighing: &Weighing) -> Self {
         let scan = hypotheses.laws.iter();
-        let weights = scan.flat_map(|scan| scan.log_weights(task.laws.len(), weighing.misfit));
-        let weights: Vec<(usize, f64)> = weights.collect();
-        let of_all = log_sum_exp(weights.iter().map(|(_, weight)| *weight));
+        let shares = scan.flat_map(|scan| scan.shares(task.laws.len(), weighing.misfit));
+        let shares: Vec<(usize, f64)> = shares.map(|(law, share)| (law.law, share)).collect();
         let mut of_laws = BTreeMap::new();
         let mut add = |law: usize, probability: f64| *of_laws.entry(law).or_insert(0.0) += probability;
         for set in &weighing.sets {
             match &set.effects {
                 None => {
-                    for (law, weight) in &weights {
-                        add(*law, set.probability * libm::exp(weight - of_all));
+                    for (law, share) in &shares {
+                        add(*law, set.probability * share);
                     }
                 }
                 Some(effects) => {

@@ -477,13 +477,8 @@ impl Weighing {
     /// one; none if no law was cross-validated.
     fn laws_alone<'a>(&self, hypotheses: &'a Hypotheses, probability: f64) -> Vec<OpenHypothesis<'a>> {
         let scan = hypotheses.laws.iter().filter(|scan| scan.confirmed.is_some());
-        let laws = scan.flat_map(|scan| {
-            // All laws have the same cost of choice among the possible ones.
-            let weights = scan.log_weights(1, self.misfit);
-            let of_all = log_sum_exp(weights.clone().map(|(_, weight)| weight));
-            let shares = weights.map(move |(_, weight)| libm::exp(weight - of_all));
-            scan.laws.iter().zip(shares)
-        });
+        // All laws have the same cost of choice among the possible ones.
+        let laws = scan.flat_map(|scan| scan.shares(1, self.misfit));
         let open = laws.map(|(law, share)| OpenHypothesis {
             effects: vec![law.candidate],
             probability: probability * share,
