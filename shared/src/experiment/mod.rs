@@ -354,6 +354,38 @@ mod tests {
     }
 
     #[test]
+    fn a_run_whose_recording_is_not_steady_is_held_out() {
+        let toml = TOML.replace(
+            "[noise]",
+            "[protocol]\nmeasured_transient_s = 25\nlowpass_hz = 0\n[noise]\nsinkage_m = 0.001",
+        );
+        let csv = HEADER.replace("use", "history,use")
+            + "a,w,s,0.2,100,0.01,5,,h.csv,fit\nb,w,s,0.3,100,0.01,5,,h.csv,fit\n";
+        let mut history = "run,t_s,sinkage_m\n".to_owned();
+        for k in 1..=30 {
+            history += &format!("a,{k},0.01\nb,{k},{}\n", 0.004 + 0.0002 * f64::from(k));
+        }
+        let files = [("runs.csv", csv), ("h.csv", history)].map(|(name, text)| (name.to_owned(), text));
+        let files = FileSet {
+            toml,
+            files: files.into(),
+        };
+        let experiment = Experiment::parse("experiment.toml", &files).unwrap();
+        let uses: Vec<RunUse> = experiment.runs.iter().map(|run| run.usage).collect();
+        assert_eq!(uses, [RunUse::Fit, RunUse::Holdout]);
+        let averages = experiment
+            .runs
+            .iter()
+            .map(|run| run.measured[Channel::Sinkage.index()].unwrap());
+        let expected = [0.01, 0.0096];
+        assert!(
+            averages
+                .zip(expected)
+                .all(|(average, expected)| (average - expected).abs() < 1e-9)
+        );
+    }
+
+    #[test]
     fn relative_scatter_is_read_and_bounded() {
         let read = |line: &str| parse(&TOML.replace("[noise]", &format!("[noise]\n{line}")), HEADER);
         let row = "a,w,s,0.2,100,0.01,1,,fit\n";

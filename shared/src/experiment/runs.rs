@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::check::{ValueError, possible};
-use super::history::{MeasuredHistory, averaged};
+use super::history::{MeasuredHistory, RecordingFile, averaged};
 use super::rig_column::RigColumn;
 use super::settings::{AveragingProtocol, SoilProperties};
 use super::table::{self, Columns, Row};
@@ -46,7 +46,7 @@ pub struct TestRun {
     pub history: Option<MeasuredHistory>,
     /// Standard deviation by channel, in place of the experiment's.
     pub sd: [Option<f64>; 4],
-    /// The use of the run: fitted, or held out to judge the fit.
+    /// The use of the run: fitted, or held out to judge the fit. A run whose recording is not steady is held out, whatever its row says.
     pub usage: RunUse,
 }
 
@@ -159,11 +159,23 @@ pub(super) fn parse(
         );
         return Err(FileError::at(file, *line, message));
     }
+    let mut recordings: BTreeMap<String, RecordingFile> = BTreeMap::new();
+    for named in rows.iter().filter_map(|(_, history, _)| history.as_ref()) {
+        if !recordings.contains_key(named) {
+            let recording = RecordingFile::parse(named, files.named(file, named)?)?;
+            recordings.insert(named.clone(), recording);
+        }
+    }
     let average = |(mut run, history, line): (TestRun, Option<String>, usize)| {
         if let Some(named) = history {
-            let text = files.named(file, &named)?;
-            let wheel = &wheels[&run.wheel];
-            let history = averaged(&named, text, wheel, protocol, (run.slip, run.sled_speed_m_s))?;
+            let (recording, wheel) = (&recordings[&named], &wheels[&run.wheel]);
+            let history = averaged(
+                recording,
+                &run.name,
+                wheel,
+                protocol,
+                (run.slip, run.sled_speed_m_s),
+            )?;
             for (channel, recorded) in history.channels() {
                 if let Some(stated) = run.measured[channel.index()].replace(recorded.average) {
                     let message = format!(
@@ -174,6 +186,9 @@ pub(super) fn parse(
                     );
                     return Err(FileError::at(file, line, message));
                 }
+            }
+            if !history.is_steady() {
+                run.usage = RunUse::Holdout;
             }
             run.history = Some(history);
         }

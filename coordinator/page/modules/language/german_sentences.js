@@ -225,11 +225,12 @@ export const SENTENCES = {
     "Nat: logarithmische Evidenz über der des Modells, wie es ist. Fette Zeilen: die Klassen von Erklärungen, die zusammen 95 % der Wahrscheinlichkeit haben; die Mitglieder einer Klasse können diese Daten nicht unterscheiden. Die Hälfte der Prior-Wahrscheinlichkeit liegt auf „nichts fehlt“.{0}",
   "Current, corrected: the current model and what it misses at the fitted conditions, interpolated.":
     "Aktuell, korrigiert: das aktuelle Modell und, interpoliert, was ihm bei den angepassten Bedingungen fehlt.",
-  "Held-out runs, with their number: in levels, each condition is one that was fitted, though perhaps not together with the others; between levels, a condition lies between fitted ones; beyond, it lies outside of what was fitted, or no fitted run has the wheel or the soil.":
-    "Zurückgehaltene Fahrten mit ihrer Anzahl: auf Stufen, jede Bedingung wurde angepasst, wenn auch vielleicht nicht zusammen mit den anderen; zwischen Stufen, eine Bedingung liegt zwischen angepassten; jenseits, sie liegt außerhalb des Angepassten, oder keine angepasste Fahrt hat das Rad oder den Boden.",
+  "Held-out runs, with their number: in levels, each condition is one that was fitted, though perhaps not together with the others; between levels, a condition lies between fitted ones; beyond, it lies outside of what was fitted, or no fitted run has the wheel or the soil; not steady, the recording shows that the wheel still sinks.":
+    "Zurückgehaltene Fahrten mit ihrer Anzahl: auf Stufen, jede Bedingung wurde angepasst, wenn auch vielleicht nicht zusammen mit den anderen; zwischen Stufen, eine Bedingung liegt zwischen angepassten; jenseits, sie liegt außerhalb des Angepassten, oder keine angepasste Fahrt hat das Rad oder den Boden; nicht stationär, nach der Aufzeichnung sinkt das Rad noch ein.",
   "in levels": "auf Stufen",
   "between levels": "zwischen Stufen",
   "beyond": "jenseits",
+  "not steady": "nicht stationär",
   "All, combined: the corrected models and the measurements alone together, weighed by how well each predicts left-out levels of the fitted runs.":
     "Alle, kombiniert: die korrigierten Modelle und die Messungen allein zusammen, gewichtet danach, wie gut jedes ausgelassene Stufen der angepassten Fahrten vorhersagt.",
   "Interpolation: the fitted measurements without any model, extrapolated beyond them, on the runs where that is possible.":

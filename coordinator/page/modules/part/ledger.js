@@ -11,7 +11,12 @@ import { Table } from "./table.js";
 const USES = { fit: t`fitted`, holdout: t`held out` };
 const BOTH = /** @type {const} */ (["fit", "holdout"]);
 /** @type {Record<string, string>} */
-const GROUPS = { in_levels: t`in levels`, between_levels: t`between levels`, beyond: t`beyond` };
+const GROUPS = {
+  in_levels: t`in levels`,
+  between_levels: t`between levels`,
+  beyond: t`beyond`,
+  not_steady: t`not steady`,
+};
 
 /**
  * A table for each set of runs: neither errors nor evidence compare between them.
@@ -90,7 +95,8 @@ function SetLedger({ study, lines, label }) {
         <p class="note">
           ${t`Held-out runs, with their number: in levels, each condition is one that was fitted, though perhaps not
             together with the others; between levels, a condition lies between fitted ones; beyond, it lies outside of
-            what was fitted, or no fitted run has the wheel or the soil.`}
+            what was fitted, or no fitted run has the wheel or the soil; not steady, the recording shows that the wheel
+            still sinks.`}
         </p>
       `
     }

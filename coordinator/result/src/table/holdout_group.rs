@@ -15,14 +15,17 @@ pub enum HoldoutGroup {
     BetweenLevels,
     /// A condition lies outside of the range of the fitted runs, or no fitted run has the wheel or the soil.
     Beyond,
+    /// The recording of the run shows that it was not steady, so no steady model can be right or wrong about its averages.
+    NotSteady,
 }
 
 impl HoldoutGroup {
     /// The groups in the order of tables.
-    pub const ALL: [HoldoutGroup; 3] = [
+    pub const ALL: [HoldoutGroup; 4] = [
         HoldoutGroup::InLevels,
         HoldoutGroup::BetweenLevels,
         HoldoutGroup::Beyond,
+        HoldoutGroup::NotSteady,
     ];
 
     /// Returns the name in tables.
@@ -31,6 +34,7 @@ impl HoldoutGroup {
             HoldoutGroup::InLevels => "in levels",
             HoldoutGroup::BetweenLevels => "between levels",
             HoldoutGroup::Beyond => "beyond",
+            HoldoutGroup::NotSteady => "not steady",
         }
     }
 }
@@ -56,6 +60,9 @@ impl<'a> FittedConditions<'a> {
 
     /// Returns the group of a holdout run.
     pub(super) fn group(&self, run: &TestRun) -> HoldoutGroup {
+        if run.history.as_ref().is_some_and(|history| !history.is_steady()) {
+            return HoldoutGroup::NotSteady;
+        }
         let is_fitted = |name: fn(&TestRun) -> &str| self.runs.iter().any(|other| name(other) == name(run));
         if !is_fitted(|run| &run.wheel) || !is_fitted(|run| &run.soil) {
             return HoldoutGroup::Beyond;
@@ -85,6 +92,9 @@ impl<'a> FittedConditions<'a> {
 
 #[cfg(test)]
 mod tests {
+    use shared::experiment::Experiment;
+    use shared::file::FileSet;
+
     use super::*;
     use crate::fixture;
 
@@ -126,6 +136,27 @@ mod tests {
         assert_eq!(further(&|run| run.sled_speed_m_s = 0.0103), InLevels);
         assert_eq!(further(&|run| run.sled_speed_m_s = 0.02), Beyond);
         assert_eq!(further(&|run| run.pass = 2), Beyond);
+    }
+
+    #[test]
+    fn a_run_that_still_sinks_is_in_a_group_of_its_own() {
+        let toml = "runs = \"runs.csv\"\n[wheel.w]\nradius_m = 0.1\nwidth_m = 0.05\n[soil.s]\n[noise]\nsinkage_m = 0.001\n\
+                    [protocol]\nmeasured_transient_s = 25\nlowpass_hz = 0\n";
+        let csv = "run,wheel,soil,slip,wheel_load_n,sled_speed_m_s,history\na,w,s,0.2,100,0.01,h.csv\nb,w,s,0.2,100,0.01,h.csv\n";
+        let mut history = "run,t_s,sinkage_m\n".to_owned();
+        for k in 1..=30 {
+            history += &format!("a,{k},0.01\nb,{k},{}\n", 0.0002 * f64::from(k));
+        }
+        let files =
+            [("runs.csv", csv), ("h.csv", &history)].map(|(name, text)| (name.to_owned(), text.to_owned()));
+        let files = FileSet {
+            toml: toml.to_owned(),
+            files: files.into(),
+        };
+        let runs = Experiment::parse("experiment.toml", &files).unwrap().runs;
+        let conditions = FittedConditions::new(vec![&runs[0]]);
+        assert_eq!(conditions.group(&runs[0]), HoldoutGroup::InLevels);
+        assert_eq!(conditions.group(&runs[1]), HoldoutGroup::NotSteady);
     }
 
     #[test]
