@@ -1,24 +1,13 @@
 //! The recorded time history of a run, and its averages.
 
-use std::collections::BTreeMap;
-
 use signal::{LowPass, SignalError, average};
 
-use super::check::ValueError;
+use super::recording_file::RecordingFile;
 use super::settings::AveragingProtocol;
-use super::table::{self, Columns, Row};
+use super::steadiness::{STEADY, relative_sinkage_rate};
 use super::wheel::WheelGeometry;
 use crate::channel::Channel;
 use crate::file::FileError;
-
-/// The maximum number of samples of a history: a day at 10 Hz.
-const MAX_SAMPLES: usize = 864_000;
-
-/// The share of the sinkage that may change over one length of the contact in a steady run. CMU's 144 runs at slip angles of 0 to 60 degrees
-/// have up to 0.027, and their 36 runs at 90 degrees, which sink until the end, 0.054 to 0.101.
-const STEADY: f64 = 0.04;
-/// Lengths of the contact over which the sinkage is averaged before it is compared with that of the same way before.
-const COMPARED: f64 = 1.5;
 
 /// Relative tolerance of each time step against the first one, because loggers round their times.
 const UNEVEN: f64 = 0.01;
@@ -32,7 +21,7 @@ pub struct MeasuredHistory {
     pub t_s: Vec<f64>,
     /// Share of its sinkage by which the wheel still sinks over one length of its contact at the end of the recording; < 0 if it rises.
     /// `None` without a recorded sinkage above 0, and for a recording that is too short to tell.
-    pub sinking: Option<f64>,
+    pub relative_sinkage_rate: Option<f64>,
     /// Length of an interval `[s]`.
     pub interval_s: f64,
     /// Time cut from the beginning before averaging `[s]`.
@@ -59,7 +48,7 @@ pub struct Recorded {
 impl MeasuredHistory {
     /// Returns whether the wheel moved steadily at the end of the recording, as far as it tells: its averages are those of a steady state.
     pub fn is_steady(&self) -> bool {
-        self.sinking.is_none_or(|share| share.abs() <= STEADY)
+        self.relative_sinkage_rate.is_none_or(|rate| rate.abs() <= STEADY)
     }
 
     /// Returns a channel's recording, if there is one.
@@ -72,82 +61,6 @@ impl MeasuredHistory {
         Channel::ALL
             .into_iter()
             .filter_map(|c| self.channel(c).map(|recorded| (c, recorded)))
-    }
-}
-
-/// The samples of a file: of one run, or by run where the file has a column `run`.
-pub(super) struct RecordingFile {
-    name: String,
-    by_run: BTreeMap<Option<String>, Samples>,
-}
-
-/// The samples of a run as they stand in their file.
-#[derive(Default)]
-struct Samples {
-    /// Line of each sample.
-    lines: Vec<usize>,
-    t_s: Vec<f64>,
-    travel_m: Vec<f64>,
-    channels: [Vec<f64>; 4],
-}
-
-impl RecordingFile {
-    /// Parses the samples of a file.
-    ///
-    /// The columns are `t_s`, the end of each sample's averaging interval, and channels; `run`, the name of the run in a file of
-    /// several; `travel_m`, the travel of the sled at `t_s`; `wheel_load_n`, which `worker simulate --histories` writes, is allowed
-    /// and not used.
-    ///
-    /// A [`FileError`] names file, line and column: fields that are blank or not finite, a travel that decreases.
-    pub(super) fn parse(name: &str, text: &str) -> Result<Self, FileError> {
-        let mut allowed = vec!["t_s", "run", "travel_m"];
-        allowed.extend(Channel::ALL.iter().map(|c| c.column()));
-        allowed.push("wheel_load_n");
-        let columns = Columns {
-            allowed,
-            required: &["t_s"],
-            max_rows: MAX_SAMPLES,
-        };
-        let mut by_run: BTreeMap<Option<String>, Samples> = BTreeMap::new();
-        table::rows(name, text, &columns, |row, line| {
-            let run = row.has("run").then(|| row.word("run").map(str::to_owned));
-            by_run.entry(run.transpose()?).or_default().push(row, line)
-        })?;
-        let file = name.to_owned();
-        Ok(RecordingFile { name: file, by_run })
-    }
-
-    /// Returns the samples of a run.
-    fn samples(&self, run: &str) -> Result<&Samples, FileError> {
-        let named = || self.by_run.get(&Some(run.to_owned()));
-        self.by_run.get(&None).or_else(named).ok_or_else(|| {
-            let message = format!("the file has no sample of run \"{run}\"");
-            FileError::whole(&self.name, message)
-        })
-    }
-}
-
-impl Samples {
-    fn push(&mut self, row: &Row<'_>, line: usize) -> Result<(), ValueError> {
-        for (channel, samples) in Channel::ALL.into_iter().zip(&mut self.channels) {
-            if row.has(channel.column()) {
-                samples.push(row.required(channel.column())?);
-            }
-        }
-        if row.has("travel_m") {
-            let travel_m = row.required("travel_m")?;
-            if let Some(&before) = self.travel_m.last()
-                && travel_m < before
-            {
-                return Err(ValueError::Rule(format!(
-                    "travel_m {travel_m} m must be >= {before} m, the travel of the sample before"
-                )));
-            }
-            self.travel_m.push(travel_m);
-        }
-        self.lines.push(line);
-        self.t_s.push(row.required("t_s")?);
-        Ok(())
     }
 }
 
@@ -219,42 +132,15 @@ pub(super) fn averaged(
     };
     let sinkage = recorded[Channel::Sinkage.index()].as_ref();
     let pitch_m = period_s.map(|period_s| period_s * sled_speed_m_s);
-    let sinking = sinkage.and_then(|sinkage| sinking(&travel_m, sinkage, wheel.radius_m, pitch_m));
+    let rate = sinkage.and_then(|z| relative_sinkage_rate(&travel_m, &z.filtered, z.average, wheel, pitch_m));
     Ok(MeasuredHistory {
         file: file.to_owned(),
         t_s,
-        sinking,
+        relative_sinkage_rate: rate,
         interval_s,
         transient_s: protocol.measured_transient_s,
         recorded,
     })
-}
-
-/// Returns the share of its sinkage by which a wheel still sinks over one length of its contact, `√(2 R z)`; `None` where it is above the
-/// surface, or has not rolled far enough.
-///
-/// Mean sinkages over the last way and over the same way before it are compared. The way is 1.5 lengths of the contact, rounded up to whole
-/// distances between grousers, whose ripple then cancels. Checked by `tests::a_wheel_that_still_sinks_is_not_steady`.
-fn sinking(travel_m: &[f64], sinkage: &Recorded, radius_m: f64, pitch_m: Option<f64>) -> Option<f64> {
-    if sinkage.average <= 0.0 {
-        return None;
-    }
-    let contact_m = (2.0 * radius_m * sinkage.average).sqrt();
-    let way_m = COMPARED * contact_m;
-    let way_m = pitch_m.map_or(way_m, |pitch_m| (way_m / pitch_m).ceil() * pitch_m);
-    let (first, last) = (travel_m.first()?, travel_m.last()?);
-    if last - first < 2.0 * way_m {
-        return None;
-    }
-    let mean = |from_m: f64, to_m: f64| {
-        let within = travel_m.iter().zip(&sinkage.filtered);
-        let within = within.filter(|(x, _)| (from_m..to_m).contains(*x));
-        let (count, sum) = within.fold((0.0, 0.0), |(count, sum), (_, z)| (count + 1.0, sum + z));
-        (count > 0.0).then(|| sum / count)
-    };
-    let before = mean(last - 2.0 * way_m, last - way_m)?;
-    let slope = (mean(last - way_m, f64::INFINITY)? - before) / way_m;
-    Some(slope * contact_m / sinkage.average)
 }
 
 /// Returns the equal step between the times `[s]`, or the position of the wrong time with a message.
@@ -312,6 +198,15 @@ mod tests {
         history.map_err(|e| e.to_string())
     }
 
+    /// Returns a protocol without a filter that cuts a transient `[s]`.
+    fn unfiltered(measured_transient_s: f64) -> AveragingProtocol {
+        AveragingProtocol {
+            measured_transient_s,
+            lowpass_hz: 0.0,
+            ..AveragingProtocol::default()
+        }
+    }
+
     /// Returns sixty seconds at 10 Hz: a pull that oscillates by 3 N with the passing grousers, after a transient.
     fn recording() -> String {
         let mut text = "# a rig\nt_s,drawbar_pull_n,sinkage_m,wheel_load_n\n".to_owned();
@@ -354,11 +249,7 @@ mod tests {
     #[test]
     fn a_wheel_that_still_sinks_is_not_steady() {
         // L = √(2 · 0.125 · 0.01) = 50 mm: 12 µm per mm are 0.6 mm per length of the contact, 6 % of 10 mm
-        let protocol = AveragingProtocol {
-            measured_transient_s: 90.0,
-            lowpass_hz: 0.0,
-            ..AveragingProtocol::default()
-        };
+        let protocol = unfiltered(90.0);
         let read_sinking = |slope: f64, ripple_m: f64| {
             let mut text = "t_s,travel_m,sinkage_m\n".to_owned();
             for k in 1..=100 {
@@ -371,9 +262,9 @@ mod tests {
         };
         let sinks = read_sinking(0.012, 0.0);
         assert!(
-            (sinks.sinking.unwrap() - 0.06).abs() < 0.003,
+            (sinks.relative_sinkage_rate.unwrap() - 0.06).abs() < 0.003,
             "{:?}",
-            sinks.sinking
+            sinks.relative_sinkage_rate
         );
         assert!(!sinks.is_steady());
         assert!(!read_sinking(-0.012, 0.0).is_steady());
@@ -383,27 +274,16 @@ mod tests {
             "grousers make a ripple, not a drift"
         );
         // 24 mm of travel cannot tell
-        let short = read(
-            "t_s,sinkage_m\n0.1,0.01\n0.2,0.02\n0.3,0.03\n",
-            &AveragingProtocol {
-                measured_transient_s: 0.0,
-                lowpass_hz: 0.0,
-                ..AveragingProtocol::default()
-            },
-        );
+        let short = read("t_s,sinkage_m\n0.1,0.01\n0.2,0.02\n0.3,0.03\n", &unfiltered(0.0));
         assert_eq!(
-            short.map(|history| (history.sinking, history.is_steady())),
+            short.map(|history| (history.relative_sinkage_rate, history.is_steady())),
             Ok((None, true))
         );
     }
 
     #[test]
     fn a_file_holds_several_runs_by_their_names() {
-        let protocol = AveragingProtocol {
-            measured_transient_s: 0.0,
-            lowpass_hz: 0.0,
-            ..AveragingProtocol::default()
-        };
+        let protocol = unfiltered(0.0);
         let text = "run,t_s,travel_m,torque_n_m\na,1,0.1,5\nb,1,0.1,1\na,2,0.2,7\na,3,0.3,6\nb,2,0.1,1\nb,3,0.05,1\n";
         let decreasing = RecordingFile::parse("h.csv", text).map(drop).unwrap_err();
         let message = "travel_m 0.05 m must be >= 0.1 m, the travel of the sample before";

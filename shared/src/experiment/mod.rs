@@ -5,7 +5,7 @@
 //!   grousers; `scatter`: relative noise; `campaign`: the origin of the measurements.
 //! - `mesh`: a wheel given as a surface of triangles.
 //! - `runs`: the rows of `runs.csv`; `rig_column`: the columns of ids of sessions, tarings and operators; `rig_error`: the errors that their runs share; `history`: the recorded
-//!   time history of a run, and its averages.
+//!   time history of a run, and its averages; `recording_file`: its samples; `steadiness`: whether the wheel still sinks.
 //! - `more_runs`: an experiment with further runs. `fewer_runs`: with fitted runs held out.
 //! - `bevameter`: the rows of `plates.csv` and `shear.csv`.
 //! - `check`: checks of single numbers.
@@ -18,11 +18,13 @@ mod fewer_runs;
 mod history;
 mod mesh;
 mod more_runs;
+mod recording_file;
 mod rig_column;
 mod rig_error;
 mod runs;
 mod scatter;
 mod settings;
+mod steadiness;
 mod table;
 mod tread;
 mod wheel;

@@ -3,7 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::check::{ValueError, possible};
-use super::history::{MeasuredHistory, RecordingFile, averaged};
+use super::history::{MeasuredHistory, averaged};
+use super::recording_file::RecordingFile;
 use super::rig_column::RigColumn;
 use super::settings::{AveragingProtocol, SoilProperties};
 use super::table::{self, Columns, Row};

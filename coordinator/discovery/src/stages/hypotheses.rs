@@ -186,9 +186,7 @@ impl LawScan {
             (law.law, evidence - law.choice(possible))
         })
     }
-}
 
-impl LawScan {
     /// Returns each law with its share of the mean evidence of all.
     ///
     /// # Arguments

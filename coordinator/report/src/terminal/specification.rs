@@ -103,11 +103,11 @@ fn averaging(run: &str, history: &MeasuredHistory, protocol: &AveragingProtocol)
             recorded.covered_s
         );
     }
-    if let Some(share) = history.sinking.filter(|_| !history.is_steady()) {
+    if let Some(rate) = history.relative_sinkage_rate.filter(|_| !history.is_steady()) {
         let _ = write!(
             text,
             "\n    not steady: the sinkage still changes by {:.1} % over one length of the contact; the run is held out",
-            100.0 * share
+            100.0 * rate
         );
     }
     text
