@@ -73,6 +73,9 @@ pub struct Observables {
     /// Change of the lateral force `[N]` with ln k*.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub d_lateral_force_n: Vec<f64>,
+    /// Sinkage at each point of the variant's transients `[m]`, in their order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub transient_sinkage_m: Vec<f64>,
     /// Pressure under each plate of the variant `[Pa]`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plate_pressure_pa: Vec<f64>,
@@ -212,6 +215,7 @@ impl Observables {
             &self.d_lateral_force_n,
             &self.plate_pressure_pa,
             &self.shear_stress_pa,
+            &self.transient_sinkage_m,
         ];
         let samples = self
             .histories
@@ -229,7 +233,8 @@ pub struct ParameterRejection {
     /// Stable word: `no_support`, `no_convergence`, `not_finite`, `energy_gained`, `protocol`, `formula`,
     /// `invalid_parameter`; for an external model also `model`, `model_error`, `time_limit`.
     pub kind: String,
-    /// Position of the rejected condition; plates are counted after the runs, and rings after the plates.
+    /// Position of the rejected condition; plates are counted after the runs, and rings after the plates. A point of a transient has the
+    /// position of its run.
     pub condition: u32,
     /// Quantity, value, unit, bound.
     pub message: String,

@@ -155,6 +155,15 @@ pub fn noise_parameter(channel: Channel) -> String {
     format!("{NOISE_PREFIX}{}", channel.column())
 }
 
+/// Parameter for the sd of the scatter of a sinkage before the steady state between repeats of a condition `[m]`.
+pub const TRANSIENT_SCATTER: &str = "noise.transient_sinkage_m";
+/// Parameter for the sd of the error of the transient that repeats of a condition share, autocorrelated along the travel `[m]`.
+pub const TRANSIENT_ERROR_SD: &str = "noise.transient_model_m";
+/// Parameter for the travel over which the correlation of this error decays by a factor e `[m]`.
+pub const TRANSIENT_ERROR_LENGTH: &str = "noise.transient_length_m";
+/// The parameters for the errors of sinkages before the steady state.
+pub const TRANSIENT_ERRORS: [&str; 3] = [TRANSIENT_SCATTER, TRANSIENT_ERROR_SD, TRANSIENT_ERROR_LENGTH];
+
 /// Returns the parameter for a relative scatter: `noise.run_scatter`.
 pub fn scatter_parameter(scatter: Scatter) -> String {
     format!("{NOISE_PREFIX}{}", scatter.key())

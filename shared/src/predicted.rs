@@ -40,6 +40,11 @@ pub enum PredictedValue {
         /// Radius of the wheel `[m]`.
         radius_m: f64,
     },
+    /// The sinkage at a point of a transient `[m]`.
+    TransientSinkage {
+        /// Position of the point.
+        point: usize,
+    },
     /// ln of the pressure under a plate `[ln Pa]`.
     LnPlatePressure {
         /// Position of the reading.
@@ -53,7 +58,7 @@ pub enum PredictedValue {
 }
 
 impl PredictedValue {
-    /// Returns the wheel's channel that it is computed from; `None` for a plate or a ring.
+    /// Returns the wheel's channel that it is computed from; `None` for a point of a transient, a plate or a ring.
     pub fn channel(self) -> Option<Channel> {
         match self {
             PredictedValue::Average { channel, .. } | PredictedValue::Sensitivity { channel, .. } => {
@@ -64,7 +69,9 @@ impl PredictedValue {
                 ..
             } => Some(Channel::Torque),
             PredictedValue::Strength { channel, .. } => Some(channel),
-            PredictedValue::LnPlatePressure { .. } | PredictedValue::LnShearStress { .. } => None,
+            PredictedValue::TransientSinkage { .. }
+            | PredictedValue::LnPlatePressure { .. }
+            | PredictedValue::LnShearStress { .. } => None,
         }
     }
 
@@ -79,6 +86,7 @@ impl PredictedValue {
                 radius_m,
             } => observables.torque_n_m[run] / radius_m,
             PredictedValue::Strength { channel, run, .. } => observables.channel(channel)[run],
+            PredictedValue::TransientSinkage { point } => observables.transient_sinkage_m[point],
             PredictedValue::LnPlatePressure { reading } => libm::log(observables.plate_pressure_pa[reading]),
             PredictedValue::LnShearStress { reading } => libm::log(observables.shear_stress_pa[reading]),
         }

@@ -192,6 +192,11 @@ fn import_german_gives_what_its_readme_says() {
 }
 
 #[test]
+fn paper_gives_the_figures_of_its_readme() {
+    hold("paper/README.md");
+}
+
+#[test]
 fn which_model_gives_the_figures_of_its_readme() {
     hold("which-model/README.md");
 }

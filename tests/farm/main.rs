@@ -53,6 +53,7 @@ mod stored_results;
 mod stream;
 mod study;
 mod summary_contract;
+mod transients;
 mod validate;
 mod which_model;
 mod wire;

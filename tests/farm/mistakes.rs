@@ -125,6 +125,8 @@ fn the_examples_raise_no_question() {
         "cmu-sand/points-scm.toml",
         "cmu-sand/points-rolled.toml",
         "cmu-sand/all-runs.toml",
+        "cmu-sand/histories.toml",
+        "paper/transient.toml",
         "other-rigs/ding-2011/job.toml",
         "other-rigs/kls-1/job.toml",
         "other-rigs/kls-1/by-hand.toml",

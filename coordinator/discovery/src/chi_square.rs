@@ -2,7 +2,7 @@
 
 use crate::laplace::fit::LaplaceFit;
 use inference::diagnostics::chi_square_tail;
-use statistics::likelihood::{CommonError, ErrorLaw, ErrorSd, Likelihood};
+use statistics::likelihood::{CommonError, CommonErrorSize, ErrorLaw, ErrorSd, Likelihood};
 
 /// p-value below which a fit contradicts the data.
 const WRONG: f64 = 0.001;
@@ -27,7 +27,8 @@ impl FitChiSquare {
     pub(crate) fn of_fit(fit: &LaplaceFit, likelihood: &Likelihood) -> Option<Self> {
         let is_inferred = |sd: ErrorSd| sd.parameter().is_some();
         // The size of a discrepancy is unknown, so it has no sd.
-        let is_unknown = |error: &CommonError| error.size.sd().is_none_or(is_inferred);
+        let is_unknown =
+            |error: &CommonError| error.size.sd().is_none() || error.size.hyperparameters().any(is_inferred);
         let is_known = likelihood.law() == ErrorLaw::Gaussian
             && !likelihood.data().iter().any(|datum| is_inferred(datum.sd))
             && !likelihood.common().iter().any(is_unknown);
@@ -45,13 +46,27 @@ impl FitChiSquare {
         })
     }
 
-    /// Computes the chi-square of a fit; with a model discrepancy, by the declared noise alone.
+    /// Computes the chi-square of a fit; with a model discrepancy, by the declared noise alone. Histories, whose errors are all
+    /// inferred, are left out then.
     pub(crate) fn of_declared_noise(fit: &LaplaceFit, likelihood: &Likelihood) -> Option<Self> {
         Self::of_fit(fit, likelihood).or_else(|| {
-            let declared = Likelihood::new(likelihood.data().to_vec()).ok()?;
-            let is_declared =
-                declared.values() == likelihood.values() && likelihood.law() == ErrorLaw::Gaussian;
-            is_declared.then(|| Self::of_fit(fit, &declared))?
+            let data = likelihood.data();
+            let of_history = |i: &usize| {
+                let mut errors = likelihood.common().iter();
+                errors.any(|error| {
+                    matches!(error.size, CommonErrorSize::Innovation(_)) && error.data.contains(i)
+                })
+            };
+            let kept: Vec<usize> = (0..data.len()).filter(|i| !of_history(i)).collect();
+            let declared = Likelihood::new(kept.iter().map(|&i| data[i]).collect()).ok()?;
+            let derivatives = likelihood.values() - data.len();
+            if derivatives > 0 || likelihood.law() != ErrorLaw::Gaussian {
+                return None;
+            }
+            match kept.len() == data.len() {
+                true => Self::of_fit(fit, &declared),
+                false => Self::of_fit(&fit.of_values(&kept), &declared),
+            }
         })
     }
 

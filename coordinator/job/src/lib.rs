@@ -40,6 +40,7 @@ pub use data::level::{levels_of, load_levels_of};
 pub use data::noise::{conditions, repeat_scatter, repeats, repeats_but_for_load};
 pub use data::rig_groups::repeats_earlier_column;
 pub use data::shared_error::SharedError;
+pub use data::transient_readings::{RunTransient, TRANSIENT, TransientReadings, is_of_run};
 pub use decision::{
     ConditionDefaults, Constraint, Decision, DecisionOption, PlannedCondition, PlannedRun, QUANTITIES,
     Quantity, QuantityFormula, QuantityValues, Statement, position_of, predicted_quantities,

@@ -92,6 +92,8 @@ async function texts() {
 const SAME = /^(Grouser|SVG|PNG|CSV|P \{0\}|n|ln|p|[NmPa]+|[a-z]+\.(toml|csv)|(coordinator|worker) .*)$/;
 /** States of the service, and what a search does: no module spells them. */
 const OF_SERVICE = [
+  "corrected",
+  "maximum likelihood",
   "queued",
   "running",
   "paused",

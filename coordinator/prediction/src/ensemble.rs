@@ -317,6 +317,7 @@ pub(crate) fn variant(
             density_kg_m3: like.and_then(|condition| condition.density_kg_m3),
             order: like.and_then(|condition| condition.order).map(|_| 0.0),
         }],
+        transients: Vec::new(),
         plates: Vec::new(),
         rings: Vec::new(),
         ..fitted.clone()

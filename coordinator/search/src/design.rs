@@ -5,7 +5,7 @@ use shared::experiment::{TestRun, rim_speed_m_s};
 use shared::model::RunCondition;
 use statistics::Likelihood;
 
-use job::{PLATE, Spec, levels_of};
+use job::{Spec, is_of_run, levels_of};
 
 /// Minimum number of levels of a variable for the cross-validation: fewer do not support an extrapolation.
 const MIN_LEVELS: usize = 3;
@@ -51,7 +51,7 @@ pub(super) fn conditions(spec: &Spec) -> Vec<Vec<usize>> {
 /// Returns the wheel data of some runs.
 fn of_runs(likelihood: &Likelihood, is_in: impl Fn(usize) -> bool) -> Vec<usize> {
     let data = likelihood.data().iter().enumerate();
-    data.filter(|(_, d)| d.channel < PLATE && is_in(d.run))
+    data.filter(|(_, d)| is_of_run(d.channel) && is_in(d.run))
         .map(|(i, _)| i)
         .collect()
 }

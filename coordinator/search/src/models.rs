@@ -317,6 +317,7 @@ impl SearchModels {
             condition.order = drifts.then_some(LAST_IN_SERIES);
         }
         variant.stiffness_sensitivity = false;
+        variant.transients.clear();
         variant.plates.clear();
         variant.rings.clear();
         variant

@@ -7,7 +7,7 @@ use shared::outcome::{Observables, SimulatedHistory};
 use super::error::StoreError;
 
 /// The number of vectors in [`Observables`].
-pub(super) const VECTORS: usize = 16;
+pub(super) const VECTORS: usize = 17;
 
 /// The lengths of the vectors, in their order, and the number of samples of each history.
 pub(super) struct Lengths {
@@ -76,6 +76,7 @@ pub(super) fn vectors(o: &Observables) -> [Cow<'_, [f64]>; VECTORS] {
         (&o.d_lateral_force_n).into(),
         (&o.plate_pressure_pa).into(),
         (&o.shear_stress_pa).into(),
+        (&o.transient_sinkage_m).into(),
     ]
 }
 
@@ -101,6 +102,7 @@ fn observables(vectors: [Vec<f64>; VECTORS]) -> Observables {
         d_lateral_force_n: next(),
         plate_pressure_pa: next(),
         shear_stress_pa: next(),
+        transient_sinkage_m: next(),
         // These values have a column of their own, and only fitted runs have them.
         histories: Vec::new(),
     }

@@ -4,12 +4,15 @@
 use shared::channel::Channel;
 use shared::outcome::Observables;
 
-use super::blob::{self, Lengths, numbers, vectors};
+use super::blob::{self, Lengths, VECTORS, numbers, vectors};
 use super::error::StoreError;
 use super::older_blob;
 
 /// The mark: a not-a-number with which no earlier form begins.
 const MARK: [u8; 8] = 0x7ff8_0000_0000_0001_u64.to_le_bytes();
+
+/// The number of vectors of versions without transients.
+const BEFORE_TRANSIENTS: usize = 16;
 
 /// Encodes observables as bytes.
 pub(super) fn encode(o: &Observables) -> Vec<u8> {
@@ -43,7 +46,12 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Observables, StoreError> {
 
 fn decode_described(mut bytes: &[u8]) -> Option<Observables> {
     let (lengths, samples): (Vec<usize>, Vec<usize>) = rmp_serde::from_read(&mut bytes).ok()?;
-    let vectors = lengths.try_into().ok()?;
+    let mut vectors = [0; VECTORS];
+    match lengths.len() {
+        // rows of versions without transients
+        count @ (BEFORE_TRANSIENTS | VECTORS) => vectors[..count].copy_from_slice(&lengths),
+        _ => return None,
+    }
     Lengths { vectors, samples }.split(&numbers(bytes)?)
 }
 
@@ -63,6 +71,18 @@ mod tests {
     }
 
     #[test]
+    fn rows_of_versions_without_transients_are_read() {
+        let observables = Observables {
+            sinkage_m: vec![0.3, 0.2],
+            ..Observables::default()
+        };
+        let lengths = [0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0_usize];
+        let header = rmp_serde::to_vec(&(&lengths[..], Vec::<usize>::new())).unwrap();
+        let bytes = [&MARK[..], &header, &blob::encode(&[0.3, 0.2])].concat();
+        assert_eq!(decode(&bytes).unwrap(), observables);
+    }
+
+    #[test]
     fn decode_inverts_encode_to_the_bit_whatever_is_there() {
         let wheel = Observables {
             drawbar_pull_n: vec![1.5, -0.0],
@@ -77,7 +97,7 @@ mod tests {
             ..Observables::default()
         };
         // Nine vectors; a mark, lengths and their number.
-        assert_eq!(encode(&wheel).len(), 9 * 2 * 8 + 8 + 21);
+        assert_eq!(encode(&wheel).len(), 9 * 2 * 8 + 8 + 22);
         let settled = Observables {
             settled_to: vec![0.003, 0.004],
             histories: vec![history(3, 0.25), history(500, 1e-3)],
@@ -93,6 +113,7 @@ mod tests {
         };
         let bevameter = Observables {
             shear_stress_pa: vec![7.0],
+            transient_sinkage_m: vec![0.02, 0.03],
             ..Observables::default()
         };
         let channel = Observables {

@@ -19,6 +19,8 @@ pub struct MeasuredHistory {
     pub file: String,
     /// End of the averaging interval of each sample `[s]`.
     pub t_s: Vec<f64>,
+    /// Travel of the sled at these times `[m]`, never decreasing.
+    pub travel_m: Vec<f64>,
     /// Share of its sinkage by which the wheel still sinks over one length of its contact at the end of the recording; < 0 if it rises.
     /// `None` without a recorded sinkage above 0, and for a recording that is too short to tell.
     pub relative_sinkage_rate: Option<f64>,
@@ -136,6 +138,7 @@ pub(super) fn averaged(
     Ok(MeasuredHistory {
         file: file.to_owned(),
         t_s,
+        travel_m,
         relative_sinkage_rate: rate,
         interval_s,
         transient_s: protocol.measured_transient_s,

@@ -5,7 +5,8 @@
 //!   grousers; `scatter`: relative noise; `campaign`: the origin of the measurements.
 //! - `mesh`: a wheel given as a surface of triangles.
 //! - `runs`: the rows of `runs.csv`; `rig_column`: the columns of ids of sessions, tarings and operators; `rig_error`: the errors that their runs share; `history`: the recorded
-//!   time history of a run, and its averages; `recording_file`: its samples; `steadiness`: whether the wheel still sinks.
+//!   time history of a run, and its averages; `recording_file`: its samples; `steadiness`: whether the wheel still sinks;
+//!   `transient`: the part of it before the wheel is steady.
 //! - `more_runs`: an experiment with further runs. `fewer_runs`: with fitted runs held out.
 //! - `bevameter`: the rows of `plates.csv` and `shear.csv`.
 //! - `check`: checks of single numbers.
@@ -26,6 +27,7 @@ mod scatter;
 mod settings;
 mod steadiness;
 mod table;
+mod transient;
 mod tread;
 mod wheel;
 
@@ -43,6 +45,7 @@ pub use scatter::{Scatter, ScatterSd};
 pub use settings::{
     AveragingProtocol, ExperimentKeys, Noise, NoiseSd, ProtocolKind, Rig, SoilProperties, read_wheels,
 };
+pub use transient::Transient;
 pub use tread::Tread;
 pub use wheel::{WheelGeometry, rim_speed_m_s};
 

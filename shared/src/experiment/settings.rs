@@ -118,6 +118,11 @@ pub struct AveragingProtocol {
     /// Cut-off of the zero-phase low-pass filter \[Hz\]; 0 is no filter.
     #[schemars(range(min = 0))]
     pub lowpass_hz: f64,
+    /// Travel of the sled at which the slip of a measured run begins `[m]`; before it the wheel is lowered and rolls. The start of the
+    /// recording, if it is not stated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0))]
+    pub slip_begins_m: Option<f64>,
 }
 
 /// The end of a simulated run.
@@ -138,6 +143,7 @@ impl Default for AveragingProtocol {
             simulated_transient_force_s: 20.0,
             simulated_transient_sinkage_s: 1.0,
             lowpass_hz: 0.5,
+            slip_begins_m: None,
         }
     }
 }
@@ -336,6 +342,7 @@ fn check_numbers(
         ("simulated_transient_force_s", force, "s"),
         ("simulated_transient_sinkage_s", sinkage, "s"),
         ("lowpass_hz", protocol.lowpass_hz, "Hz"),
+        ("slip_begins_m", protocol.slip_begins_m.unwrap_or(0.0), "m"),
     ] {
         not_negative(key, value, unit).map_err(|e| within("protocol", e))?;
     }

@@ -1,4 +1,4 @@
-//! The conditions to simulate: runs of the rig, readings of plates and rings.
+//! The conditions to simulate: runs of the rig, points before they are steady, readings of plates and rings.
 
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -47,6 +47,21 @@ impl RunCondition {
             pass: run.pass,
         }
     }
+}
+
+/// Points of travel at which the sinkage of a run is predicted before it is steady; their measurements stay with the coordinator.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TransientCondition {
+    /// Position of the run in [`ModelVariant::conditions`](super::ModelVariant::conditions).
+    pub run: usize,
+    /// Sinkage where the slip of the run begins `[m]`.
+    pub start_sinkage_m: f64,
+    /// Steady sinkage to which the wheel settles `[m]`; that of the model if it is not stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub steady_sinkage_m: Option<f64>,
+    /// Travel of the sled since the beginning of the slip at each point `[m]`, ascending.
+    pub travel_m: Vec<f64>,
 }
 
 /// A plate in the soil; its measurement stays with the coordinator.

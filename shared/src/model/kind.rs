@@ -78,6 +78,14 @@ impl ModelKind {
         !matches!(self, ModelKind::Rft | ModelKind::Command | ModelKind::Umbridge)
     }
 
+    /// Returns whether it predicts the sinkage on the way to the steady state.
+    pub fn has_transients(self) -> bool {
+        matches!(
+            self,
+            ModelKind::QuasiStatic | ModelKind::WongReece | ModelKind::Scm
+        )
+    }
+
     /// Returns whether its wheel is a smooth cylinder, whatever grousers are declared.
     pub fn is_smooth(self) -> bool {
         matches!(self, ModelKind::QuasiStatic | ModelKind::WongReece)

@@ -30,7 +30,7 @@ pub mod settings;
 pub mod spatial;
 mod variant;
 
-pub use condition::{PlateCondition, RingCondition, RunCondition};
+pub use condition::{PlateCondition, RingCondition, RunCondition, TransientCondition};
 pub use drawn::DrawnModel;
 pub use effects::{EffectSet, EffectText};
 pub use error::ModelError;

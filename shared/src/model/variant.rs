@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use utoipa::ToSchema;
 
-use super::condition::{PlateCondition, RingCondition, RunCondition};
+use super::condition::{PlateCondition, RingCondition, RunCondition, TransientCondition};
 use super::effects::{EffectSet, EffectText};
 use super::error::ModelError;
 use super::external::ExternalModel;
@@ -64,6 +64,9 @@ pub struct ModelVariant {
     /// True if the time histories of the runs are returned, too; only the three-dimensional model has them.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub histories: bool,
+    /// Transients to predict.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub transients: Vec<TransientCondition>,
     /// Readings of plates to predict.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plates: Vec<PlateCondition>,
@@ -174,6 +177,7 @@ impl ModelVariant {
             channels: settings.external.iter().flat_map(|m| m.outputs.clone()).collect(),
             stiffness_sensitivity: false,
             histories: false,
+            transients: Vec::new(),
             plates: Vec::new(),
             rings: Vec::new(),
             probe: Vec::new(),
@@ -193,10 +197,26 @@ impl ModelVariant {
 
     /// Returns variants for each condition alone.
     pub fn by_condition(&self) -> impl Iterator<Item = Self> {
-        self.conditions.iter().map(|condition| ModelVariant {
-            conditions: vec![condition.clone()],
-            ..self.clone()
+        self.conditions.iter().enumerate().map(|(run, condition)| {
+            let of_run = self.transients.iter().filter(|transient| transient.run == run);
+            let alone = |transient: &TransientCondition| TransientCondition {
+                run: 0,
+                ..transient.clone()
+            };
+            ModelVariant {
+                conditions: vec![condition.clone()],
+                transients: of_run.map(alone).collect(),
+                ..self.clone()
+            }
         })
+    }
+
+    /// Returns the number of points of all transients.
+    pub fn transient_points(&self) -> usize {
+        self.transients
+            .iter()
+            .map(|transient| transient.travel_m.len())
+            .sum()
     }
 
     /// Returns the names of all parameters, free and fixed.
@@ -273,7 +293,7 @@ fn check_grousers(
 }
 
 impl Observables {
-    /// Returns whether every vector that a variant requests has an entry for each condition, plate and ring; vectors beyond
+    /// Returns whether every vector that a variant requests has an entry for each condition, transient, plate and ring; vectors beyond
     /// the request are allowed.
     pub fn covers(&self, variant: &ModelVariant) -> bool {
         let runs = variant.conditions.len();
@@ -286,7 +306,8 @@ impl Observables {
             let samples = history.sinkage_m.len();
             Channel::ALL.iter().all(|&c| history.channel(c).len() == samples)
         };
-        self.plate_pressure_pa.len() == variant.plates.len()
+        self.transient_sinkage_m.len() == variant.transient_points()
+            && self.plate_pressure_pa.len() == variant.plates.len()
             && self.shear_stress_pa.len() == variant.rings.len()
             && self.histories.len() == histories
             && self.histories.iter().all(whole)

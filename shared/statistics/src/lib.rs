@@ -31,8 +31,8 @@ pub mod prior;
 pub mod rng;
 
 pub use likelihood::{
-    CommonError, CommonErrorSize, Datum, Discrepancy, ErrorLaw, ErrorSd, Likelihood, LikelihoodError,
-    Sensitive,
+    CommonError, CommonErrorSize, Datum, Discrepancy, ErrorLaw, ErrorSd, Innovation, Likelihood,
+    LikelihoodError, Sensitive,
 };
 pub use log_likelihood::{LogLikelihood, NotANumber};
 pub use prior::{Distribution, Marginal, Prior, PriorError};

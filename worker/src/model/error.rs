@@ -15,6 +15,19 @@ pub enum CompileError {
     /// Histories are requested from a steady-state model.
     #[error("histories: {0} has only a steady state; use kind = \"scm\"")]
     NoHistories(&'static str),
+    /// Transients are requested from a model without them.
+    #[error(
+        "transients: {0} has only a steady state; use kind = \"quasi_static\", \"wong_reece\" or \"scm\""
+    )]
+    NoTransients(&'static str),
+    /// A transient names a run that does not exist.
+    #[error("a transient names run {run} of {runs}")]
+    UnknownRun {
+        /// Position of the run.
+        run: usize,
+        /// Number of runs.
+        runs: usize,
+    },
     /// The surface of a wheel is impossible.
     #[error(transparent)]
     Surface(#[from] scm::Rejection),

@@ -58,6 +58,9 @@ impl OutsideModel {
         if variant.histories {
             return Err(CompileError::NoHistories(variant.kind.name()));
         }
+        if !variant.transients.is_empty() {
+            return Err(CompileError::NoTransients(variant.kind.name()));
+        }
         let find = |name: &str| ParameterSource::find(variant, name);
         let shares = |name: &str| find(name).filter(|_| description.shares(name));
         let parameters = description

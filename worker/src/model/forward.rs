@@ -1,9 +1,11 @@
-//! The forward model of a variant: simulates every condition, and predicts plates and rings, at one parameter vector.
+//! The forward model of a variant: simulates every condition with its transient, and predicts plates and rings, at one parameter vector.
 
 use scm::spatial::SpatialRun;
 use scm::{Averages, Condition, Wheel};
 use shared::channel::Channel;
-use shared::model::{EffectSet, ModelKind, ModelVariant, PlateCondition, RingCondition, RunCondition};
+use shared::model::{
+    EffectSet, ModelKind, ModelVariant, PlateCondition, RingCondition, RunCondition, TransientCondition,
+};
 use shared::outcome::{Observables, Outcome, ParameterRejection};
 
 use super::bevameter::CompiledBevameter;
@@ -12,6 +14,7 @@ use super::error::CompileError;
 use super::parameters::Radius;
 use super::physics::{Physics, PhysicsAt, Run, Simulated};
 use super::recording;
+use super::transients::Transients;
 
 /// The forward model of a variant with its names resolved, so that an evaluation looks up nothing.
 #[derive(Debug)]
@@ -25,6 +28,8 @@ pub(super) struct ForwardModel {
     channels: Vec<Channel>,
     stiffness_sensitivity: bool,
     histories: bool,
+    /// The transients to predict, by run.
+    transients: Transients,
     /// The bevameter with its plates and rings, if there are readings to predict.
     bevameter: Option<(CompiledBevameter, Vec<PlateCondition>, Vec<RingCondition>)>,
 }
@@ -41,6 +46,7 @@ impl ForwardModel {
         if variant.histories && variant.kind != ModelKind::Scm {
             return Err(CompileError::NoHistories(variant.kind.name()));
         }
+        let transients = Transients::new(variant)?;
         let effects = EffectMap::new(variant, &set)?;
         let names: Vec<&str> = variant.wheels.keys().map(String::as_str).collect();
         let wheels = variant
@@ -75,6 +81,7 @@ impl ForwardModel {
             channels: variant.channels.clone(),
             stiffness_sensitivity: variant.stiffness_sensitivity,
             histories: variant.histories,
+            transients,
             bevameter: match variant.plates.is_empty() && variant.rings.is_empty() {
                 true => None,
                 false => Some((
@@ -100,10 +107,23 @@ impl ForwardModel {
         };
         let mut effects = self.effects.at(theta);
         let mut observables = Observables::with_capacity(self.runs());
+        observables.transient_sinkage_m = vec![0.0; self.transients.count()];
         for position in 0..self.runs() {
-            match self.simulate(theta, &physics, &mut effects, position) {
-                Ok(Simulated::Steady(averages)) => push(&mut observables, &averages),
-                Ok(Simulated::Rolled(run)) => {
+            let simulated = match self.simulate(theta, &physics, &mut effects, position) {
+                Ok(simulated) => simulated,
+                Err(rejection) => return rejected(rejection.kind(), position, rejection.to_string()),
+            };
+            for (places, transient) in self.transients.of_run(position) {
+                match self.transient(theta, &physics, &mut effects, &simulated, transient) {
+                    Ok(sinkage_m) => {
+                        observables.transient_sinkage_m[places.clone()].copy_from_slice(&sinkage_m);
+                    }
+                    Err(rejection) => return rejected(rejection.kind(), position, rejection.to_string()),
+                }
+            }
+            match simulated {
+                Simulated::Steady(averages) => push(&mut observables, &averages),
+                Simulated::Rolled(run) => {
                     push(&mut observables, &run.averages);
                     observables.settled_to.extend(run.settled_to);
                     if self.histories {
@@ -116,7 +136,6 @@ impl ForwardModel {
                     }
                     keep(*run);
                 }
-                Err(rejection) => return rejected(rejection.kind(), position, rejection.to_string()),
             }
         }
         if self.stiffness_sensitivity
@@ -239,21 +258,44 @@ impl ForwardModel {
         effects: &mut ActiveEffects,
         position: usize,
     ) -> Result<Simulated, scm::Rejection> {
-        let (wheel_index, condition) = &self.conditions[position];
-        let (wheel, radius) = &self.wheels[*wheel_index];
-        let wheel = Wheel {
+        let wheel = self.wheel(theta, position);
+        let run = self.run(theta, &wheel, position);
+        physics.simulate(&run, effects.on_wheel(run.wheel_index))
+    }
+
+    /// Returns the sinkage at each point of a run's transient `[m]`.
+    fn transient(
+        &self,
+        theta: &[f64],
+        physics: &PhysicsAt,
+        effects: &mut ActiveEffects,
+        simulated: &Simulated,
+        transient: &TransientCondition,
+    ) -> Result<Vec<f64>, scm::Rejection> {
+        let wheel = self.wheel(theta, transient.run);
+        let run = self.run(theta, &wheel, transient.run);
+        physics.transient_sinkage(&run, effects.on_wheel(run.wheel_index), simulated, transient)
+    }
+
+    /// Returns the wheel of a condition, with its radius at these parameters.
+    fn wheel(&self, theta: &[f64], position: usize) -> Wheel {
+        let (wheel, radius) = &self.wheels[self.conditions[position].0];
+        Wheel {
             radius_m: radius.value(theta).unwrap_or(wheel.radius_m),
             ..*wheel
-        };
-        let run = Run {
+        }
+    }
+
+    fn run<'r>(&'r self, theta: &'r [f64], wheel: &'r Wheel, position: usize) -> Run<'r> {
+        let (wheel_index, condition) = &self.conditions[position];
+        Run {
             theta,
             position,
             wheel_index: *wheel_index,
-            wheel: &wheel,
+            wheel,
             condition,
             site: self.effects.site(position),
-        };
-        physics.simulate(&run, effects.on_wheel(*wheel_index))
+        }
     }
 }
 

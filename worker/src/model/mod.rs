@@ -8,7 +8,7 @@
 //! - `error`: errors of compiling a variant.
 //! - `effects`: the effects, compiled, with the sources of their parameters.
 //! - `parameters`: the source of each physical quantity.
-//! - `recording`: the time histories of a run, at 10 Hz.
+//! - `recording`: the time histories of a run, at 10 Hz; `transients`: the points before it is steady, by run.
 
 mod bevameter;
 mod cache;
@@ -20,6 +20,7 @@ mod parameters;
 mod physics;
 mod recording;
 mod spatial;
+mod transients;
 mod variant;
 
 pub use bevameter::{CompiledBevameter, Readings, without_action};

@@ -1,16 +1,19 @@
 //! The equations that simulate a variant's wheel, with the sources of their parameters.
 
 use scm::effects::{Active, Site};
-use scm::quasi_static::{self, StraightGrousers};
+use scm::quasi_static::{self, StraightGrousers, Way};
 use scm::rft::{self, RftShape, RftSoil};
 use scm::spatial::{Grousers, SpatialRun, SurfaceMesh};
 use scm::{Averages, Condition, Rejection, Soil, Wheel, WongReece};
 use shared::experiment::WheelGeometry;
-use shared::model::{ModelKind, ModelVariant};
+use shared::model::{ModelKind, ModelVariant, TransientCondition};
 
 use super::error::CompileError;
 use super::parameters::{RftMap, SoilMap, WongReeceMap};
 use super::spatial::SpatialModel;
+
+/// The smallest settlement of a rolled wheel of which shares are compared with a recording `[m]`.
+const MIN_SETTLEMENT_M: f64 = 1e-6;
 
 /// The equations of a variant.
 #[derive(Debug)]
@@ -108,6 +111,68 @@ impl PhysicsAt<'_> {
             }
         };
         averages.map(Simulated::Steady)
+    }
+
+    /// Returns the sinkage at each point of the transient of a simulated condition `[m]`.
+    ///
+    /// The three-dimensional model has rolled to the points itself; a point beyond the end of its run has the average. Where a steady
+    /// sinkage is stated, the share of the settlement that it predicts is that from the stated start to the stated steady sinkage. The
+    /// other models settle from the start that the transient states.
+    ///
+    /// # Errors
+    /// Those of [`quasi_static::transient_sinkage`]; a rolled wheel that settles by less than [`MIN_SETTLEMENT_M`] has no share of it.
+    pub(super) fn transient_sinkage(
+        &self,
+        run: &Run,
+        effects: &Active,
+        simulated: &Simulated,
+        transient: &TransientCondition,
+    ) -> Result<Vec<f64>, Rejection> {
+        let (soil, averages) = match (self, simulated) {
+            (PhysicsAt::Scm(..), Simulated::Rolled(rolled)) => {
+                let step_m = run.condition.sled_speed_m_s * rolled.history.step_s;
+                let own_steady_m = rolled.averages.sinkage_m;
+                let rolled_to = |travel_m: f64| {
+                    let sinkage_m = rolled.history.sinkage_at(travel_m / step_m);
+                    sinkage_m.unwrap_or(own_steady_m)
+                };
+                let Some(steady_m) = transient.steady_sinkage_m else {
+                    return Ok(transient
+                        .travel_m
+                        .iter()
+                        .map(|travel_m| rolled_to(*travel_m))
+                        .collect());
+                };
+                let own_start_m = rolled_to(0.0);
+                let settlement_m = own_steady_m - own_start_m;
+                if settlement_m.abs() < MIN_SETTLEMENT_M {
+                    return Err(Rejection::InvalidParameter {
+                        name: "settlement of the rolled wheel",
+                        value: settlement_m,
+                        unit: "m",
+                        bound: "at least 1e-6 m, up or down, to be compared with a recording",
+                    });
+                }
+                let at = |travel_m: &f64| {
+                    let left = (own_steady_m - rolled_to(*travel_m)) / settlement_m;
+                    steady_m - left * (steady_m - transient.start_sinkage_m)
+                };
+                return Ok(transient.travel_m.iter().map(at).collect());
+            }
+            (
+                PhysicsAt::QuasiStatic(soil, _) | PhysicsAt::WongReece(soil, _),
+                Simulated::Steady(averages),
+            ) => (soil, averages),
+            (_, Simulated::Rolled(_)) | (PhysicsAt::Scm(..) | PhysicsAt::Rft(..), Simulated::Steady(_)) => {
+                unreachable!("a variant with transients compiles only for models that have them")
+            }
+        };
+        let way = Way {
+            steady_sinkage_m: transient.steady_sinkage_m.unwrap_or(averages.sinkage_m),
+            start_sinkage_m: transient.start_sinkage_m,
+            travel_m: &transient.travel_m,
+        };
+        quasi_static::transient_sinkage(soil, run.wheel, run.condition, effects, run.site, &way)
     }
 
     /// Returns the equations on a soil whose pressure at the same depth is `factor` times as large.

@@ -1,4 +1,4 @@
-//! The gradient and curvature of the likelihood along inferred noise sds, on which the predicted values do not depend.
+//! The gradient and curvature of the likelihood along inferred noise sds and correlation lengths, on which the predicted values do not depend.
 
 use nalgebra::DMatrix;
 
@@ -9,7 +9,8 @@ use statistics::likelihood::{ErrorSd, Likelihood};
 /// Half width of the central differences; the density is smooth and accurate to rounding.
 const DIFFERENCE: f64 = 1e-3;
 
-/// Lists the coordinates that are sds: those of noise with the number of data that share them, those of common errors without.
+/// Lists the coordinates that are sds or correlation lengths: those of noise with the number of data that share them, those of common
+/// errors without.
 pub(crate) fn coordinates(likelihood: &Likelihood) -> Vec<(usize, Option<usize>)> {
     let data = likelihood.data().iter();
     let mut parameters: Vec<usize> = data.filter_map(|datum| datum.sd.parameter()).collect();
@@ -18,10 +19,10 @@ pub(crate) fn coordinates(likelihood: &Likelihood) -> Vec<(usize, Option<usize>)
     let mut coordinates: Vec<(usize, Option<usize>)> =
         groups.map(|group| (group[0], Some(group.len()))).collect();
     for error in likelihood.common() {
-        if let Some(parameter) = error.size.sd().and_then(ErrorSd::parameter)
-            && !coordinates.iter().any(|(sd, _)| *sd == parameter)
-        {
-            coordinates.push((parameter, None));
+        for parameter in error.size.hyperparameters().filter_map(ErrorSd::parameter) {
+            if !coordinates.iter().any(|(sd, _)| *sd == parameter) {
+                coordinates.push((parameter, None));
+            }
         }
     }
     coordinates

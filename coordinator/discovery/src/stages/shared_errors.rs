@@ -52,7 +52,7 @@ pub struct JudgedError {
     pub probability: f64,
     /// Posterior mean of its sd if it acts: in the unit of the data, or relative.
     pub sd: f64,
-    /// The error of each group.
+    /// The error of each group; of an error that is autocorrelated along the travel, each of its innovations.
     pub groups: Vec<GroupError>,
 }
 
@@ -143,7 +143,10 @@ impl<'a> SharedErrorQuestion<'a> {
                     },
                 };
                 let groups = suspected.groups.iter().cloned();
-                common.extend(groups.map(|data| CommonError { data, size }));
+                common.extend(groups.map(|data| CommonError {
+                    data,
+                    size: size.clone(),
+                }));
             }
         }
         let discrepancies = whole.discrepancies().to_vec();
@@ -217,16 +220,25 @@ impl<'a> SharedErrorQuestion<'a> {
         let likelihood = self.likelihood(sd)?;
         let model = self.linearised(&likelihood);
         let mode = model.mode(self.model.fit.point.position.clone())?;
-        let directions = self
-            .errors(&likelihood)
-            .map(|error| direction(&likelihood, error, sd, &mode.values));
-        let factors = model.factors(&mode, directions)?;
-        let group = |(error, [mean, spread]): (&CommonError, [f64; 2])| GroupError {
-            data: error.data.clone(),
-            mean: sd * mean,
-            sd: sd * spread,
+        let theta = self.model.fit.frame.theta(&mode.position);
+        let mut directions = Vec::new();
+        for error in self.errors(&likelihood) {
+            directions.push(direction(&likelihood, error, sd, &mode.values, &theta)?);
+        }
+        let factors = model.factors(&mode, directions.into_iter())?;
+        let group = |(error, [mean, spread]): (&CommonError, [f64; 2])| {
+            let scale = match &error.size {
+                CommonErrorSize::Innovation(innovation) => innovation.sd_at_point(&theta).ok()?,
+                CommonErrorSize::Shift(_) | CommonErrorSize::Sensitivity { .. } => sd,
+                CommonErrorSize::Discrepancy { .. } => return None,
+            };
+            Some(GroupError {
+                data: error.data.clone(),
+                mean: scale * mean,
+                sd: scale * spread,
+            })
         };
-        Some(self.errors(&likelihood).zip(factors).map(group).collect())
+        self.errors(&likelihood).zip(factors).map(group).collect()
     }
 }
 
@@ -241,9 +253,21 @@ fn factor_derivatives(error: &SuspectedError, values: &[f64]) -> Vec<f64> {
     data.into_iter().map(|i| values[i]).collect()
 }
 
-/// Returns the shift of each datum by one sd of a common error.
-fn direction(likelihood: &Likelihood, error: &CommonError, sd: f64, values: &[f64]) -> Vec<f64> {
+/// Returns the shift of each datum by one sd of a common error; `None` where theta has an sd or correlation length out of bounds.
+fn direction(
+    likelihood: &Likelihood,
+    error: &CommonError,
+    sd: f64,
+    values: &[f64],
+    theta: &[f64],
+) -> Option<Vec<f64>> {
     let mut direction = vec![0.0; likelihood.data().len()];
+    if let CommonErrorSize::Innovation(innovation) = &error.size {
+        for (&datum, shift) in error.data.iter().zip(innovation.shifts(theta).ok()?) {
+            direction[datum] = shift;
+        }
+        return Some(direction);
+    }
     for &datum in &error.data {
         direction[datum] = match error.size {
             CommonErrorSize::Sensitivity { derivative, .. } => {
@@ -254,5 +278,5 @@ fn direction(likelihood: &Likelihood, error: &CommonError, sd: f64, values: &[f6
             _ => sd,
         };
     }
-    direction
+    Some(direction)
 }

@@ -23,7 +23,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_8;
 pub(super) enum NoiseProfile {
     /// Noise sds of independent normal errors: each is the solution of a one-dimensional problem.
     Separate(Vec<InferredNoise>),
-    /// Sds that depend on each other: with common errors or heavy tails. Their indices in theta.
+    /// Sds and correlation lengths that depend on each other: with common errors or heavy tails. Their indices in theta.
     Entangled(Vec<usize>),
 }
 
@@ -81,9 +81,10 @@ impl NoiseProfile {
     }
 }
 
-/// Returns every inferred sd, of noise and of common errors, by ascending parameter.
+/// Returns every inferred sd, of noise and of common errors, and every inferred correlation length, by ascending parameter.
 fn inferred_sds(likelihood: &Likelihood) -> Vec<usize> {
-    let common_sds = likelihood.common().iter().filter_map(|error| error.size.sd());
+    let common = likelihood.common().iter();
+    let common_sds = common.flat_map(|error| error.size.hyperparameters());
     let data_sds = likelihood.data().iter().map(|datum| datum.sd);
     let mut parameters: Vec<usize> = data_sds
         .chain(common_sds)

@@ -55,6 +55,11 @@ pub(crate) enum DataError {
     /// No measurement to fit.
     #[error("no fit run has a measured channel: there is nothing to fit")]
     NothingToFit,
+    /// The job fits histories, but no fitted run has a recorded transient.
+    #[error(
+        "[likelihood] histories = true, but no fit run has a recorded sinkage above 0 m and travels at least 1.5 lengths of its contact between [protocol] slip_begins_m and measured_transient_s"
+    )]
+    NoTransients,
     /// The readings of plates or rings have no scatter.
     #[error("readings without noise")]
     NoScatter,

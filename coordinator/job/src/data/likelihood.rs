@@ -8,6 +8,7 @@ use super::error::DataError;
 use super::noise;
 use super::shared_error::SharedError;
 use super::shared_sd::scatter_sd;
+use super::transient_readings::TransientReadings;
 use crate::table::likelihood_settings::LikelihoodSettings;
 use crate::table::prior_entry::FreeParameter;
 
@@ -15,7 +16,7 @@ use crate::table::prior_entry::FreeParameter;
 pub(crate) fn likelihood(
     experiment: &Experiment,
     fit_runs: &[usize],
-    bevameter: &BevameterReadings,
+    (bevameter, transients): (&BevameterReadings, &TransientReadings),
     parameters: &[FreeParameter],
     shared: &[SharedError],
     settings: LikelihoodSettings,
@@ -55,11 +56,12 @@ pub(crate) fn likelihood(
     if data.is_empty() {
         return Err(DataError::NothingToFit);
     }
-    let common = common
+    let mut common: Vec<CommonError> = common
         .into_iter()
         .filter(|(data, _)| !data.is_empty())
         .map(|(data, size)| CommonError { data, size })
         .collect();
+    transients.append(parameters, &mut data, &mut common)?;
     Ok(Likelihood::with_common(
         data,
         settings.law,

@@ -11,3 +11,4 @@ pub(crate) mod predicted_values;
 pub(crate) mod rig_groups;
 pub(crate) mod shared_error;
 pub(crate) mod shared_sd;
+pub(crate) mod transient_readings;

@@ -6,6 +6,7 @@ use statistics::{Datum, Likelihood};
 
 use super::bevameter_readings::{PLATE, RING};
 use super::shared_error::BY_STRENGTH;
+use super::transient_readings::TRANSIENT;
 
 /// Returns the predicted values of a likelihood: one for each datum, then the derivatives.
 ///
@@ -13,9 +14,13 @@ use super::shared_error::BY_STRENGTH;
 /// - `radii_m`: radius of the wheel of each fitted run `[m]`.
 pub(crate) fn predicted_values(likelihood: &Likelihood, radii_m: &[f64]) -> Vec<PredictedValue> {
     let data = likelihood.data();
+    let mut points = 0..;
     let value = |d: &Datum| match d.channel {
         PLATE => PredictedValue::LnPlatePressure { reading: d.run },
         RING => PredictedValue::LnShearStress { reading: d.run },
+        TRANSIENT => PredictedValue::TransientSinkage {
+            point: points.next().expect("the range has no end"),
+        },
         channel => PredictedValue::Average {
             channel: Channel::ALL[channel],
             run: d.run,

@@ -100,7 +100,7 @@ impl SharedError {
             data: (0..data.len())
                 .filter(|&i| runs.contains(&data[i].run) && feels(&data[i]))
                 .collect(),
-            size,
+            size: size.clone(),
         };
         self.groups.iter().map(error).collect()
     }

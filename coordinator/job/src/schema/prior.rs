@@ -7,7 +7,9 @@ use serde_json::{Map, Value, json};
 use shared::channel::Channel;
 use shared::experiment::{RigError, Scatter};
 use shared::model::effects::parameter_name;
-use shared::parameters::{self, BaseParameter, RING_TRANSFER};
+use shared::parameters::{
+    self, BaseParameter, RING_TRANSFER, TRANSIENT_ERROR_LENGTH, TRANSIENT_ERROR_SD, TRANSIENT_SCATTER,
+};
 
 use crate::plain_parameter::PLAIN_PARAMETERS;
 use crate::table::prior_entry_error::DISTRIBUTIONS;
@@ -138,6 +140,26 @@ impl JobParameter {
                 lower: 0.0,
                 upper: f64::INFINITY,
             });
+        let transients = [
+            (
+                TRANSIENT_SCATTER,
+                "standard deviation [m] of sinkages before the steady state between repeats; only with histories = true",
+            ),
+            (
+                TRANSIENT_ERROR_SD,
+                "standard deviation [m] of the model's error before the steady state, which repeats share; only with histories = true",
+            ),
+            (
+                TRANSIENT_ERROR_LENGTH,
+                "travel [m] over which the correlation of these errors decays by a factor e; only with histories = true",
+            ),
+        ];
+        let transients = transients.map(|(name, words)| JobParameter {
+            name: name.to_owned(),
+            words: words.to_owned(),
+            lower: 0.0,
+            upper: f64::INFINITY,
+        });
         let ring = JobParameter {
             name: RING_TRANSFER.to_owned(),
             words: "logarithm of the ratio of tan phi under the ring to tan phi under the wheel".to_owned(),
@@ -152,6 +174,7 @@ impl JobParameter {
         of_models
             .chain(JobParameter::of_effects())
             .chain(noise)
+            .chain(transients)
             .chain([ring])
     }
 

@@ -10,6 +10,7 @@ use crate::data::likelihood::likelihood;
 use crate::data::predicted_values::predicted_values;
 use crate::data::shared_error::SharedError;
 use crate::data::shared_sd::StiffnessErrors;
+use crate::data::transient_readings::TransientReadings;
 use crate::table::likelihood_settings::LikelihoodSettings;
 use crate::table::prior_entry::FreeParameter;
 
@@ -28,7 +29,7 @@ pub(super) struct Fitted {
 impl Fitted {
     pub(super) fn new(
         experiment: &Experiment,
-        bevameter: &BevameterReadings,
+        readings: (&BevameterReadings, &TransientReadings),
         parameters: &[FreeParameter],
         settings: LikelihoodSettings,
         stiffness: StiffnessErrors,
@@ -36,7 +37,7 @@ impl Fitted {
         let (fit_runs, holdout_runs): (Vec<usize>, Vec<usize>) =
             (0..experiment.runs.len()).partition(|&i| experiment.runs[i].usage == RunUse::Fit);
         let shared = SharedError::all(experiment, &fit_runs, parameters, stiffness)?;
-        let likelihood = likelihood(experiment, &fit_runs, bevameter, parameters, &shared, settings)?;
+        let likelihood = likelihood(experiment, &fit_runs, readings, parameters, &shared, settings)?;
         let radius = |&i: &usize| experiment.wheels[&experiment.runs[i].wheel].radius_m;
         let radii_m: Vec<f64> = fit_runs.iter().map(radius).collect();
         Ok(Fitted {

@@ -26,6 +26,7 @@ use crate::data::error::DataError;
 use crate::data::rig_groups::preparations;
 use crate::data::shared_error::SharedError;
 use crate::data::shared_sd::StiffnessErrors;
+use crate::data::transient_readings::TransientReadings;
 use crate::job::{Job, JobModels};
 use crate::named_files::NamedFiles;
 use crate::table::algorithm_settings::AlgorithmSettings;
@@ -72,6 +73,8 @@ pub struct Spec {
     pub likelihood_settings: LikelihoodSettings,
     /// The measured readings of plates and rings; all are fitted.
     pub bevameter: BevameterReadings,
+    /// The recorded sinkages before the steady state, if the job fits them.
+    pub transients: TransientReadings,
     /// The search of its study for missing effects.
     pub discovery: DiscoverySettings,
     /// Names of the plausibility questions whose odd values are intended.
@@ -137,17 +140,16 @@ impl Spec {
             has_derivatives: job.model.external.is_none(),
             has_unknown_discrepancy: job.likelihood.discrepancies.contains(&Discrepancy::Unknown),
         };
-        let parameters = Parameters::new(job_name, &job, &experiment, &bevameter, stiffness)?;
-        let fitted = Fitted::new(
-            &experiment,
-            &bevameter,
-            &parameters.free,
-            job.likelihood,
-            stiffness,
-        );
+        let transients = match job.likelihood.histories {
+            true => TransientReadings::new(&experiment).map_err(in_data)?,
+            false => TransientReadings::default(),
+        };
+        let readings = (&bevameter, &transients);
+        let parameters = Parameters::new(job_name, &job, &experiment, readings, stiffness)?;
+        let fitted = Fitted::new(&experiment, readings, &parameters.free, job.likelihood, stiffness);
         let fitted = fitted.map_err(in_data)?;
         check_algorithms(&job, parameters.free.len(), fitted.predicted.len()).map_err(in_job)?;
-        let variants = Variants::new(&experiment, &bevameter, &parameters, &fitted).map_err(in_job)?;
+        let variants = Variants::new(&experiment, readings, &parameters, &fitted).map_err(in_job)?;
         Ok(Spec {
             experiment,
             model: parameters.model,
@@ -165,6 +167,7 @@ impl Spec {
             reference: job.reference,
             likelihood_settings: job.likelihood,
             bevameter,
+            transients,
             discovery: job.discovery,
             accepted: job.accepted,
             candidates,
@@ -211,10 +214,12 @@ impl Spec {
             .iter()
             .filter_map(|value| value.channel())
             .collect();
-        ModelVariant {
+        let mut variant = ModelVariant {
             channels: fitted.into_iter().collect(),
             ..self.fit_variant.clone()
-        }
+        };
+        self.transients.keep_data(&mut variant);
+        variant
     }
 
     /// Returns the predicted values that the likelihood takes from an evaluation of the fitted runs.
@@ -239,9 +244,11 @@ impl Spec {
         };
         let values = self.predicted_values(observables);
         match self.likelihood.log_likelihood(&values, theta) {
-            // A draw from the tail of a prior may have a standard deviation of zero. This is a property of theta, not an error of the
-            // model.
-            Err(LikelihoodError::Noise { .. }) => Ok(LogLikelihood::Impossible),
+            // A draw from the tail of a prior may have a standard deviation or a correlation length of zero. This is a property of theta,
+            // not an error of the model; what the files state was checked before.
+            Err(LikelihoodError::Noise { .. } | LikelihoodError::Setting { .. }) => {
+                Ok(LogLikelihood::Impossible)
+            }
             scored => scored,
         }
     }

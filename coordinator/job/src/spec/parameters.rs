@@ -11,6 +11,7 @@ use statistics::{Prior, PriorError};
 use crate::data::bevameter_readings::BevameterReadings;
 use crate::data::noise;
 use crate::data::shared_sd::{SharedSd, StiffnessErrors};
+use crate::data::transient_readings::TransientReadings;
 use crate::job::Job;
 use crate::table::posterior_prior::JointPrior;
 use crate::table::prior_entry::{FreeParameter, ParsedPrior, check_candidate};
@@ -32,7 +33,7 @@ impl Parameters {
         name: &str,
         job: &Job,
         experiment: &Experiment,
-        bevameter: &BevameterReadings,
+        (bevameter, transients): (&BevameterReadings, &TransientReadings),
         stiffness: StiffnessErrors,
     ) -> Result<Parameters, FileError> {
         let in_job = |message: String| FileError::whole(name, message);
@@ -58,6 +59,9 @@ impl Parameters {
         add_unstated(name, &effects, &wheels, &mut model, &mut free)?;
         bevameter
             .add_transfer(&model.fixed, &mut free)
+            .map_err(|e| in_job(e.to_string()))?;
+        transients
+            .add_parameters(&mut free)
             .map_err(|e| in_job(e.to_string()))?;
         let shared = SharedSd::all(experiment, bevameter, stiffness);
         noise::add_unknown_sds(experiment, &shared, &mut free);

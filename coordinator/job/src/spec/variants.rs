@@ -9,6 +9,7 @@ use super::parameters::Parameters;
 use crate::data::bevameter_readings::BevameterReadings;
 use crate::data::outside_model;
 use crate::data::shared_error::BY_STIFFNESS;
+use crate::data::transient_readings::TransientReadings;
 
 /// The variants of a calibration.
 pub(super) struct Variants {
@@ -23,7 +24,7 @@ impl Variants {
     /// A sentence: the model cannot express the experiment.
     pub(super) fn new(
         experiment: &Experiment,
-        bevameter: &BevameterReadings,
+        (bevameter, transients): (&BevameterReadings, &TransientReadings),
         parameters: &Parameters,
         fitted: &Fitted,
     ) -> Result<Variants, String> {
@@ -40,10 +41,20 @@ impl Variants {
             ));
         }
         bevameter.ask(&mut fit);
-        let holdout = match fitted.holdout_runs.as_slice() {
+        if !transients.fitted.is_empty() && !model.kind.has_transients() {
+            return Err(format!(
+                "[likelihood] histories = true, but kind = \"{}\" has a steady state alone: use quasi_static, wong_reece or scm",
+                model.kind.name()
+            ));
+        }
+        transients.ask_fitted(&mut fit);
+        let mut holdout = match fitted.holdout_runs.as_slice() {
             [] => None,
             runs => Some(variant_of_runs(runs, experiment, parameters, fitted)?),
         };
+        if let Some(holdout) = &mut holdout {
+            transients.ask_holdout(holdout);
+        }
         Ok(Variants { fit, holdout })
     }
 }

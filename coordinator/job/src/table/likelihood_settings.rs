@@ -22,6 +22,8 @@ pub struct LikelihoodSettings {
     pub law: ErrorLaw,
     /// The discrepancy of the model in a condition, in noise sds, in the order of [`Channel::ALL`].
     pub discrepancies: [Discrepancy; 4],
+    /// Whether the recorded sinkages before the steady state are fitted, too.
+    pub histories: bool,
 }
 
 impl LikelihoodSettings {
@@ -94,6 +96,8 @@ pub(crate) struct RawLikelihood {
     #[serde(rename = "discrepancy.lateral_force")]
     #[schemars(schema_with = "channel_schema")]
     lateral_force: Option<toml::Value>,
+    /// Whether the recorded sinkages before the steady state are fitted beside the averages.
+    histories: bool,
 }
 
 /// Returns the schema of the discrepancy of one channel.
@@ -127,6 +131,7 @@ impl Default for RawLikelihood {
             torque: None,
             sinkage: None,
             lateral_force: None,
+            histories: false,
         }
     }
 }
@@ -175,7 +180,11 @@ impl RawLikelihood {
                 discrepancies[i] = discrepancy(KEYS[i], value)?;
             }
         }
-        Ok(LikelihoodSettings { law, discrepancies })
+        Ok(LikelihoodSettings {
+            law,
+            discrepancies,
+            histories: self.histories,
+        })
     }
 }
 

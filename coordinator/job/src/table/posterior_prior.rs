@@ -8,7 +8,8 @@ use shared::experiment::Scatter;
 use shared::file::{FileError, number, unknown_word};
 use shared::model::ParameterScope;
 use shared::parameters::{
-    NOISE_PREFIX, RING_TRANSFER, WHEEL_RADIUS, bekker_moduli, noise_parameter, scatter_parameter,
+    NOISE_PREFIX, RING_TRANSFER, TRANSIENT_ERRORS, WHEEL_RADIUS, bekker_moduli, noise_parameter,
+    scatter_parameter,
 };
 use statistics::{Distribution, Marginal};
 
@@ -214,7 +215,7 @@ impl PosteriorPrior {
 fn is_of_wheel(column: &str) -> bool {
     let of_channel = |channel: Channel| column == noise_parameter(channel);
     match column.starts_with(NOISE_PREFIX) {
-        true => Channel::ALL.into_iter().any(of_channel),
+        true => Channel::ALL.into_iter().any(of_channel) || TRANSIENT_ERRORS.contains(&column),
         false => {
             column == WHEEL_RADIUS || column.contains('.') && ![RING_TRANSFER, RING_MODULUS].contains(&column)
         }

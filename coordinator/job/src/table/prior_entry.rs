@@ -9,7 +9,7 @@ use shared::experiment::{RigError, Scatter};
 use shared::file::{FileError, number, unknown_word};
 use shared::model::effects::parameter_name;
 use shared::model::{EffectSet, ParameterScope};
-use shared::parameters::{self, BaseParameter, NOISE_PREFIX, ParameterBounds, behind};
+use shared::parameters::{self, BaseParameter, NOISE_PREFIX, ParameterBounds, TRANSIENT_ERRORS, behind};
 use statistics::{Distribution, Marginal};
 
 use super::prior_entry_error::{DISTRIBUTIONS, PriorEntryError};
@@ -235,6 +235,7 @@ fn quantity(name: &str, scope: &ParameterScope) -> Result<ParameterBounds, Prior
     };
     let unit = match Channel::ALL.into_iter().find(|c| c.column() == column) {
         Some(channel) => channel.unit(),
+        None if TRANSIENT_ERRORS.contains(&name) => "m",
         None if Scatter::ALL.iter().any(|s| s.key() == column) => "1",
         None => match RigError::find(column) {
             Some(error) => error.unit(),
@@ -243,6 +244,8 @@ fn quantity(name: &str, scope: &ParameterScope) -> Result<ParameterBounds, Prior
                 let known = Channel::ALL.map(Channel::column).into_iter();
                 let known = known.chain(Scatter::ALL.map(Scatter::key));
                 let known = known.chain(rig.iter().map(String::as_str));
+                let transient = TRANSIENT_ERRORS.iter();
+                let known = known.chain(transient.filter_map(|name| name.strip_prefix(NOISE_PREFIX)));
                 return Err(PriorEntryError::Unknown(unknown_word("noise", column, known)));
             }
         },

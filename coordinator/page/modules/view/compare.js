@@ -1,7 +1,7 @@
 // Model against measurement: every channel at its true conditions, time histories, the table of runs.
 
 import { html, useState } from "../html.js";
-import { HistoryChart } from "../chart/history_chart.js";
+import { HistoryCharts } from "../chart/history_chart.js";
 import { varying } from "../chart/condition.js";
 import { t } from "../language/language.js";
 import { AxisPicker, ChannelCharts } from "../part/channel_charts.js";
@@ -48,11 +48,23 @@ export function Compare({ study, model, query }) {
       histories.length > 0 &&
       html`
         <h2>Time histories</h2>
-        <div class="figures">${histories.map((h) => html`<${HistoryChart} history=${h} name=${study.name} />`)}</div>
+        <${FoldedIfMany} isMany=${histories.length > UNFOLDED} title=${t`${histories.length} histories`}>
+          <div class="figures">${histories.map((h) => html`<${HistoryCharts} history=${h} name=${study.name} />`)}</div>
+        <//>
       `
     }
     <${Folded} title="Table of all runs"><${RunTable} rows=${comparison.rows} /><//>
   `;
+}
+
+/** Largest number of histories that are drawn without a click. */
+const UNFOLDED = 6;
+
+/** A part that is folded if it has many pictures. */
+function FoldedIfMany(
+  /** @type {{ isMany: boolean, title: string, children?: unknown }} */ { isMany, title, children },
+) {
+  return isMany ? html`<${Folded} title=${title}>${children}<//>` : children;
 }
 
 /** A part that is made when it is opened first: the table of a thousand runs has ten thousand cells. */

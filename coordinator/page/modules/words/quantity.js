@@ -8,8 +8,8 @@ export const shown = (/** @type {string} */ unit) =>
   shownUnit(unit) ?? { unit: raised(unit.replace(/^deg$/, "°")), scale: 1 };
 
 const SHORT = { drawbar_pull: t`pull`, torque: t`torque`, sinkage: t`sinkage`, lateral_force: t`lateral force` };
-const NAMES = { ...SHORT, drawbar_pull: t`drawbar pull` };
-const UNITS = { drawbar_pull: "N", torque: "N m", sinkage: "m", lateral_force: "N" };
+const NAMES = { ...SHORT, drawbar_pull: t`drawbar pull`, transient_sinkage: t`sinkage before it is steady` };
+const UNITS = { drawbar_pull: "N", torque: "N m", sinkage: "m", lateral_force: "N", transient_sinkage: "m" };
 
 /** The channels in their order. */
 export const CHANNELS = /** @type {const} */ (["drawbar_pull", "torque", "sinkage", "lateral_force"]);

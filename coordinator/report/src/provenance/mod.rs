@@ -91,6 +91,14 @@ fn data(calibration: &FinishedCalibration) -> String {
             number::count(rings, "ring reading")
         );
     }
+    let points = spec.transients.points();
+    if points > 0 {
+        words += &format!(
+            "; {} before the steady state, of {}",
+            number::count(points, "sinkage"),
+            number::count(spec.transients.fitted.len(), "recording")
+        );
+    }
     words
 }
 

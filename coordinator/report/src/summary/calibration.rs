@@ -18,6 +18,7 @@ use result::table::coverage::Coverage;
 use result::table::fixed_sigma::FixedSigmas;
 use result::table::holdout_errors::HoldoutErrors;
 use result::table::row::rows_of;
+use result::table::transient_errors::TransientErrors;
 
 /// A line of the error ledger.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
@@ -71,6 +72,9 @@ pub struct CalibrationSummary {
     /// Errors of the posterior-mean prediction of the holdout runs by group; groups without a run are left out.
     #[serde(default)]
     pub holdout_groups: Vec<HoldoutSummary>,
+    /// Errors of the sinkage before the steady state by group of runs; empty if the job fits no histories.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub transient_errors: Vec<TransientErrors>,
     /// Noise standard deviation by channel: declared, or its posterior mean.
     pub noise_sd: BTreeMap<String, f64>,
     /// Share of measurements inside their 90 % interval.
@@ -190,5 +194,6 @@ pub fn calibration_summary(calibration: &FinishedCalibration) -> Option<Calibrat
             holdout: comparison.holdout.clone(),
         },
         holdout_groups: HoldoutSummary::all(HoldoutErrors::of_model(comparison.rows.iter())),
+        transient_errors: TransientErrors::by_group(&calibration.predicted_transients(comparison)),
     })
 }

@@ -16,7 +16,10 @@ use result::parameter_summary::ParameterSummary;
 use result::point_estimate::{FittedParameter, fitted};
 use result::table::error_model::error_model;
 use result::table::readings::reading_errors;
+use result::table::transient_errors::{PredictedTransient, TransientErrors};
+use result::words::data_channel::ShownUnit;
 use result::words::number;
+use shared::channel::Channel;
 
 /// Returns, for example, `hidden-effect: 14 stages, 16658 evaluations (3 rejected by the model), 1.5 s, log-evidence -1347.66`.
 pub(super) fn headline(calibration: &FinishedCalibration) -> String {
@@ -77,6 +80,7 @@ pub(super) fn summary(calibration: &FinishedCalibration) -> String {
     for error in reading_errors(calibration) {
         let _ = writeln!(text, "{}", error.words());
     }
+    text.push_str(&transients(&calibration.predicted_transients(compared)));
     text.push_str(&match calibration.estimate() {
         Some(estimate) => point(calibration, estimate),
         None => parameters(calibration),
@@ -91,6 +95,28 @@ pub(super) fn summary(calibration: &FinishedCalibration) -> String {
         let _ = writeln!(text, "\nnote: {note}");
     }
     text
+}
+
+/// Tabulates the errors of the sinkage before the steady state by group of runs; empty without transients.
+fn transients(predicted: &[PredictedTransient]) -> String {
+    let groups = TransientErrors::by_group(predicted);
+    if groups.is_empty() {
+        return String::new();
+    }
+    let millimetres = |m: f64| number::significant(ShownUnit::new(Channel::Sinkage).factor * m, 2);
+    let table = Table::<&TransientErrors>::new()
+        .left(28, "sinkage before it is steady", |errors| {
+            match errors.holdout_group {
+                None => errors.usage.name(),
+                Some(group) => group.words(),
+            }
+        })
+        .right(6, "runs", |errors| errors.runs.to_string())
+        .right(12, "error mm", |errors| millimetres(errors.rmse_m))
+        .right(14, "corrected mm", |errors| {
+            cell(errors.corrected_rmse_m, millimetres)
+        });
+    table.text(&groups) + "\n"
 }
 
 /// Tabulates the most probable parameters, with the standard deviations of the Laplace approximation if they are known.

@@ -3,13 +3,16 @@
 use std::fmt::Write;
 
 use job::{FreeParameter, JointPrior, Spec};
-use shared::experiment::{AveragingProtocol, MeasuredHistory};
+use shared::experiment::{AveragingProtocol, Experiment, MeasuredHistory, TestRun};
 
 use super::campaign::campaign;
 use super::column::width;
 use super::table::Table;
 use result::finished_calibration::prior_mean;
 use result::words::number;
+
+/// Largest number of recordings whose averages are all shown; of more the first one is.
+const MAX_RECORDINGS: usize = 12;
 
 /// Describes the data, model, algorithm and priors of a job.
 pub fn specification(spec: &Spec) -> String {
@@ -39,14 +42,15 @@ pub fn specification(spec: &Spec) -> String {
             let _ = writeln!(text, "{} of {what}", number::count(readings, "reading"));
         }
     }
-    for run in &spec.experiment.runs {
-        if let Some(history) = &run.history {
-            let _ = writeln!(
-                text,
-                "{}",
-                averaging(&run.name, history, &spec.experiment.protocol)
-            );
-        }
+    text += &averagings(&spec.experiment);
+    let points = spec.transients.points();
+    if points > 0 {
+        let _ = writeln!(
+            text,
+            "{} of {} before they are steady, given their averages",
+            number::count(points, "sinkage"),
+            number::count(spec.transients.fitted.len(), "fitted run")
+        );
     }
     for words in spec.joint_prior.iter().flat_map(JointPrior::words) {
         let _ = writeln!(text, "{words}");
@@ -77,6 +81,37 @@ pub fn specification(spec: &Spec) -> String {
     text
 }
 
+/// Returns how the recordings were averaged: the first ones, and those that are not steady.
+fn averagings(experiment: &Experiment) -> String {
+    let recorded = experiment
+        .runs
+        .iter()
+        .filter_map(|run| Some((run, run.history.as_ref()?)));
+    let recorded: Vec<(&TestRun, &MeasuredHistory)> = recorded.collect();
+    let first = match recorded.len() {
+        count if count > MAX_RECORDINGS => 1,
+        count => count,
+    };
+    let mut text = String::new();
+    let mut not_steady = 0;
+    for (position, (run, history)) in recorded.iter().enumerate() {
+        if position < first {
+            let _ = writeln!(text, "{}", averaging(&run.name, history, &experiment.protocol));
+        } else if let Some(words) = unsteadiness(history) {
+            not_steady += 1;
+            let _ = writeln!(text, "run {}: {words}", run.name);
+        }
+    }
+    if recorded.len() > first {
+        let _ = writeln!(
+            text,
+            "{} averaged by the same protocol, {not_steady} of them not steady",
+            number::count(recorded.len() - first, "further recording")
+        );
+    }
+    text
+}
+
 /// Describes the part of a run's recording that is averaged: samples, periods.
 fn averaging(run: &str, history: &MeasuredHistory, protocol: &AveragingProtocol) -> String {
     let filter = match protocol.lowpass_hz {
@@ -103,12 +138,17 @@ fn averaging(run: &str, history: &MeasuredHistory, protocol: &AveragingProtocol)
             recorded.covered_s
         );
     }
-    if let Some(rate) = history.relative_sinkage_rate.filter(|_| !history.is_steady()) {
-        let _ = write!(
-            text,
-            "\n    not steady: the sinkage still changes by {:.1} % over one length of the contact; the run is held out",
-            100.0 * rate
-        );
+    if let Some(words) = unsteadiness(history) {
+        let _ = write!(text, "\n    {words}");
     }
     text
+}
+
+/// Returns what makes a recording not steady; `None` if it is steady.
+fn unsteadiness(history: &MeasuredHistory) -> Option<String> {
+    let rate = history.relative_sinkage_rate.filter(|_| !history.is_steady())?;
+    Some(format!(
+        "not steady: the sinkage still changes by {:.1} % over one length of the contact; the run is held out",
+        100.0 * rate
+    ))
 }

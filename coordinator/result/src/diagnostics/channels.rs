@@ -19,7 +19,7 @@ use crate::words::probability::{LEVEL, p_words};
 /// The diagnostics of a channel with fitted data.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct ChannelDiagnostics {
-    /// Channel without unit; `plates` and `rings` for readings of the bevameter.
+    /// Channel without unit; `plates` and `rings` for readings of the bevameter, `transient_sinkage` for sinkages before the steady state.
     #[schema(value_type = String)]
     pub channel: DataChannel,
     /// Unit of the standard deviations; for plates and rings they are those of the natural logarithm.

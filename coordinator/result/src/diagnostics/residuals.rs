@@ -14,7 +14,7 @@ const LARGEST: usize = 5;
 pub struct ResidualDiagnostics {
     /// Name of the run, or of the plate or ring test.
     pub run: String,
-    /// Channel, by its name without unit.
+    /// Channel, by its name without unit; `transient_sinkage` for sinkages before the steady state.
     #[schema(value_type = String)]
     pub channel: DataChannel,
     /// Unit of residual and error; for plates and rings they are those of the natural logarithm.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use job::is_of_run;
 use shared::channel::Channel;
 use shared::experiment::{RunUse, TestRun};
 use statistics::Likelihood;
@@ -66,7 +67,7 @@ impl LeftOut {
     fn leave_out(&mut self, calibration: &FinishedCalibration, draws: &[Draw], runs: &[usize]) -> Option<()> {
         let spec = &calibration.spec;
         let data = spec.likelihood.data();
-        let is_left_out = |i: &usize| data[*i].channel < Channel::ALL.len() && runs.contains(&data[*i].run);
+        let is_left_out = |i: &usize| is_of_run(data[*i].channel) && runs.contains(&data[*i].run);
         let kept: Vec<usize> = (0..data.len()).filter(|i| !is_left_out(i)).collect();
         if kept.len() == data.len() {
             return Some(());

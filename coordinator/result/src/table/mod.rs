@@ -9,7 +9,8 @@
 //! - `combination`: the average over the models of a study (`combined_row`) and the measurements alone (`without_model`).
 //! - `prediction`: all predictions, run by run.
 //! - `holdout_group`: places of holdout runs among the fitted conditions; `holdout_errors`: errors there.
-//! - `coverage`: measurements inside their intervals. `readings`: errors of plates and rings.
+//! - `coverage`: measurements inside their intervals. `readings`: errors of plates and rings. `transient_errors`: errors of the sinkage
+//!   before the steady state.
 //! - `refusal`: draws at which the model refuses a run. `error_model`: the error model in words. `posterior`: draws as a table.
 
 mod combination;
@@ -36,4 +37,5 @@ pub mod predictive;
 pub mod readings;
 pub mod refusal;
 pub mod row;
+pub mod transient_errors;
 mod without_model;

@@ -1,6 +1,6 @@
 //! Data channel: a channel of the likelihood with its name and the unit in which it is shown.
 
-use job::{PLATE, RING};
+use job::{PLATE, RING, TRANSIENT};
 use shared::channel::Channel;
 
 use super::number;
@@ -13,6 +13,16 @@ pub enum DataChannel {
     Wheel(Channel),
     /// The readings of a bevameter test, which enter by their natural logarithm.
     Bevameter(BevameterTest),
+    /// A channel of the wheel before it is steady.
+    Transient(TransientChannel),
+}
+
+/// A channel of the wheel before it is steady.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum TransientChannel {
+    /// The sinkage at points of the travel.
+    #[serde(rename = "transient_sinkage")]
+    Sinkage,
 }
 
 /// A test of the bevameter.
@@ -50,6 +60,7 @@ impl DataChannel {
         match index {
             PLATE => DataChannel::Bevameter(BevameterTest::Plates),
             RING => DataChannel::Bevameter(BevameterTest::Rings),
+            TRANSIENT => DataChannel::Transient(TransientChannel::Sinkage),
             wheel => DataChannel::Wheel(Channel::ALL[wheel]),
         }
     }
@@ -59,6 +70,7 @@ impl DataChannel {
         match self {
             DataChannel::Wheel(channel) => channel.name(),
             DataChannel::Bevameter(test) => test.name(),
+            DataChannel::Transient(TransientChannel::Sinkage) => "transient_sinkage",
         }
     }
 
@@ -67,6 +79,7 @@ impl DataChannel {
         match self {
             DataChannel::Wheel(channel) => channel.words(),
             DataChannel::Bevameter(test) => test.name(),
+            DataChannel::Transient(TransientChannel::Sinkage) => "transient sinkage",
         }
     }
 
@@ -75,6 +88,7 @@ impl DataChannel {
         match self {
             DataChannel::Wheel(channel) => channel.unit(),
             DataChannel::Bevameter(_) => "1",
+            DataChannel::Transient(TransientChannel::Sinkage) => Channel::Sinkage.unit(),
         }
     }
 
@@ -82,6 +96,7 @@ impl DataChannel {
     pub fn shown(self) -> ShownUnit {
         match self {
             DataChannel::Wheel(channel) => ShownUnit::new(channel),
+            DataChannel::Transient(TransientChannel::Sinkage) => ShownUnit::new(Channel::Sinkage),
             DataChannel::Bevameter(_) => ShownUnit {
                 factor: 100.0,
                 name: "%",

@@ -1,6 +1,7 @@
 //! Common errors of several data, and the blocks of correlated data.
 
 use super::datum::{Datum, ErrorSd, LikelihoodError};
+use super::innovation::{Innovation, check_sd};
 
 /// An error that several data share: it adds `v v'` to their covariance.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,8 +12,60 @@ pub struct CommonError {
     pub size: CommonErrorSize,
 }
 
+impl CommonError {
+    /// Returns the common errors of one history, whose errors are autocorrelated along the travel: one [`Innovation`] for each datum.
+    ///
+    /// # Arguments
+    /// - `data`: indices of the data of the history, ascending.
+    /// - `coordinates_m`: travel of each datum \[m\], ascending; equal coordinates are allowed.
+    /// - `sd`: of the autocorrelated error, in the unit of the data, >= 0.
+    /// - `correlation_length_m`: distance over which the correlation decays by a factor e \[m\], > 0, known or inferred.
+    ///
+    /// # Errors
+    /// [`LikelihoodError::Distances`] if data and coordinates differ in number, [`LikelihoodError::Setting`] for a coordinate that is
+    /// not finite or below the previous one. Checked by `autocorrelation::a_history_has_the_density_of_its_kernel`.
+    pub fn of_history(
+        data: &[usize],
+        coordinates_m: &[f64],
+        sd: ErrorSd,
+        correlation_length_m: ErrorSd,
+    ) -> Result<Vec<Self>, LikelihoodError> {
+        if data.len() != coordinates_m.len() {
+            return Err(LikelihoodError::Distances {
+                expected: data.len(),
+                given: coordinates_m.len(),
+            });
+        }
+        let innovations = Innovation::of_history(coordinates_m, sd, correlation_length_m)?;
+        let error = |(k, innovation)| Self {
+            data: data[k..].to_vec(),
+            size: CommonErrorSize::Innovation(innovation),
+        };
+        Ok(innovations.into_iter().enumerate().map(error).collect())
+    }
+
+    /// Returns the same error on the data that remain in a subset; `None` if none does.
+    ///
+    /// # Arguments
+    /// - `kept`: indices of the remaining data, ascending.
+    pub(super) fn within(&self, kept: &[usize]) -> Option<Self> {
+        let (mut data, mut places) = (Vec::new(), Vec::new());
+        for (k, datum) in kept.iter().enumerate() {
+            if let Ok(place) = self.data.binary_search(datum) {
+                data.push(k);
+                places.push(place);
+            }
+        }
+        let size = match &self.size {
+            CommonErrorSize::Innovation(innovation) => CommonErrorSize::Innovation(innovation.on(&places)),
+            size => size.clone(),
+        };
+        (!data.is_empty()).then_some(Self { data, size })
+    }
+}
+
 /// The effect of a common error on each of its data.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum CommonErrorSize {
     /// Shifts all data equally: `v_i` = this sd, in the unit of the data, >= 0.
     Shift(ErrorSd),
@@ -32,25 +85,62 @@ pub enum CommonErrorSize {
         /// Index of the derivative.
         derivative: usize,
     },
+    /// Shifts each datum by an innovation of an error that is autocorrelated along the travel; [`CommonError::of_history`] creates all
+    /// those of a history.
+    Innovation(Innovation),
 }
 
 impl CommonErrorSize {
     /// Returns the standard deviation; `None` for a discrepancy, whose size follows from the noise.
     #[must_use]
-    pub fn sd(self) -> Option<ErrorSd> {
+    pub fn sd(&self) -> Option<ErrorSd> {
         match self {
-            Self::Shift(sd) | Self::Sensitivity { sd, .. } => Some(sd),
+            Self::Shift(sd) | Self::Sensitivity { sd, .. } => Some(*sd),
             Self::Discrepancy { .. } => None,
+            Self::Innovation(innovation) => Some(innovation.sd),
         }
+    }
+
+    /// Returns the correlation length \[m\]; `None` for an error that does not decay.
+    #[must_use]
+    pub fn correlation_length_m(&self) -> Option<ErrorSd> {
+        match self {
+            Self::Innovation(innovation) => Some(innovation.correlation_length_m),
+            Self::Shift(_) | Self::Sensitivity { .. } | Self::Discrepancy { .. } => None,
+        }
+    }
+
+    /// Returns the numbers on which the error depends, known or inferred: the sd, then the correlation length.
+    pub fn hyperparameters(&self) -> impl Iterator<Item = ErrorSd> {
+        self.sd().into_iter().chain(self.correlation_length_m())
     }
 
     /// Returns the same error with another standard deviation; a discrepancy is unchanged, as it has none.
     #[must_use]
-    pub fn with_sd(self, sd: ErrorSd) -> Self {
+    pub fn with_sd(&self, sd: ErrorSd) -> Self {
         match self {
             Self::Shift(_) => Self::Shift(sd),
-            Self::Sensitivity { derivative, .. } => Self::Sensitivity { sd, derivative },
-            Self::Discrepancy { .. } => self,
+            Self::Sensitivity { derivative, .. } => Self::Sensitivity {
+                sd,
+                derivative: *derivative,
+            },
+            Self::Discrepancy { .. } => self.clone(),
+            Self::Innovation(innovation) => Self::Innovation(Innovation {
+                sd,
+                ..innovation.clone()
+            }),
+        }
+    }
+
+    /// Returns the same error with another correlation length \[m\]; an error that does not decay is unchanged.
+    #[must_use]
+    pub fn with_correlation_length_m(&self, correlation_length_m: ErrorSd) -> Self {
+        match self {
+            Self::Innovation(innovation) => Self::Innovation(Innovation {
+                correlation_length_m,
+                ..innovation.clone()
+            }),
+            Self::Shift(_) | Self::Sensitivity { .. } | Self::Discrepancy { .. } => self.clone(),
         }
     }
 }
@@ -149,7 +239,9 @@ pub(super) fn blocks(
                 .collect();
             let unknown = members.iter().filter_map(|&c| match common[c].size {
                 CommonErrorSize::Discrepancy { group } => Some(group),
-                CommonErrorSize::Shift(_) | CommonErrorSize::Sensitivity { .. } => None,
+                CommonErrorSize::Shift(_)
+                | CommonErrorSize::Sensitivity { .. }
+                | CommonErrorSize::Innovation(_) => None,
             });
             let mut unknown: Vec<usize> = unknown
                 .filter(|&group| discrepancies[group] == Discrepancy::Unknown)
@@ -195,7 +287,9 @@ pub(super) fn sensitive(common: &[CommonError]) -> Vec<Sensitive> {
             let data = error.data.iter();
             data.map(|&datum| Sensitive { derivative, datum }).collect()
         }
-        CommonErrorSize::Shift(_) | CommonErrorSize::Discrepancy { .. } => Vec::new(),
+        CommonErrorSize::Shift(_) | CommonErrorSize::Discrepancy { .. } | CommonErrorSize::Innovation(_) => {
+            Vec::new()
+        }
     };
     let mut sensitive: Vec<Sensitive> = common.iter().flat_map(sensitive).collect();
     sensitive.sort_unstable();
@@ -221,14 +315,11 @@ pub(super) fn check(count: usize, groups: usize, common: &[CommonError]) -> Resu
         {
             return Err(LikelihoodError::Group { group, groups });
         }
-        if let Some(ErrorSd::Known(value)) = error.size.sd()
-            && !(value.is_finite() && value >= 0.0)
-        {
-            return Err(LikelihoodError::Setting {
-                name: "sd of a common error",
-                value,
-                bound: "a finite number of at smallest 0",
-            });
+        if let Some(ErrorSd::Known(value)) = error.size.sd() {
+            check_sd(value)?;
+        }
+        if let CommonErrorSize::Innovation(innovation) = &error.size {
+            innovation.check(error.data.len())?;
         }
     }
     Ok(())

@@ -58,8 +58,8 @@ pub enum LikelihoodError {
         /// The length of theta.
         dimension: usize,
     },
-    /// A model without the parameter of an inferred sd was requested.
-    #[error("parameter {parameter} is the sd of an error and cannot be left out")]
+    /// A model without the parameter of an inferred sd or correlation length was requested.
+    #[error("parameter {parameter} is the sd or correlation length of an error and cannot be left out")]
     DroppedSd {
         /// Index of the parameter in theta.
         parameter: usize,
@@ -91,6 +91,14 @@ pub enum LikelihoodError {
         value: f64,
         /// The requirement, in words.
         bound: &'static str,
+    },
+    /// The number of coordinates or distances of an autocorrelated error is wrong.
+    #[error("{given} coordinates or distances of an autocorrelated error, {expected} are expected")]
+    Distances {
+        /// Number of its data.
+        expected: usize,
+        /// Number of coordinates or distances that were given.
+        given: usize,
     },
     /// A common error names a datum that does not exist, or one twice.
     #[error("a common error names datum {datum} of {data}, or names it twice")]

@@ -109,7 +109,8 @@ impl Likelihood {
         self.data.len() + position.expect("every common error has its derivatives among the sensitive ones")
     }
 
-    /// Returns whether some inferred sd has no closed form: it belongs to correlated or heavy-tailed data, or to a common error.
+    /// Returns whether some inferred sd has no closed form: it belongs to correlated or heavy-tailed data, or to a common error, as does
+    /// an inferred correlation length.
     #[must_use]
     pub fn entangles_unknown_sds(&self) -> bool {
         let is_inferred = |sd: ErrorSd| sd.parameter().is_some();
@@ -118,7 +119,7 @@ impl Likelihood {
         let common = self
             .common
             .iter()
-            .any(|error| error.size.sd().is_some_and(is_inferred));
+            .any(|error| error.size.hyperparameters().any(is_inferred));
         heavy || common || tied.into_iter().any(|&i| is_inferred(self.data[i].sd))
     }
 }

@@ -5,14 +5,14 @@ use super::datum::{Datum, ErrorSd, LikelihoodError};
 use super::error_model::Likelihood;
 
 impl Likelihood {
-    /// Returns the likelihood of the same data under a model that keeps some of the parameters: each inferred sd is read at its
-    /// parameter's position among the kept ones.
+    /// Returns the likelihood of the same data under a model that keeps some of the parameters: each inferred sd or correlation
+    /// length is read at its parameter's position among the kept ones.
     ///
     /// # Arguments
     /// - `kept`: positions in theta of the kept parameters, in the order of the model's theta.
     ///
     /// # Errors
-    /// [`LikelihoodError::DroppedSd`] if the parameter of an inferred sd is not kept. Checked by
+    /// [`LikelihoodError::DroppedSd`] if the parameter of an inferred sd or correlation length is not kept. Checked by
     /// `tests::an_inferred_sd_is_read_at_its_place_among_the_kept_parameters`.
     pub fn with_parameters(&self, kept: &[usize]) -> Result<Likelihood, LikelihoodError> {
         let data = self.data.iter().map(|datum| -> Result<Datum, LikelihoodError> {
@@ -25,10 +25,16 @@ impl Likelihood {
             .common
             .iter()
             .map(|error| -> Result<CommonError, LikelihoodError> {
-                let sd = error.size.sd().map(|sd| renumbered(sd, kept)).transpose()?;
+                let mut size = error.size.clone();
+                if let Some(sd) = size.sd() {
+                    size = size.with_sd(renumbered(sd, kept)?);
+                }
+                if let Some(length_m) = size.correlation_length_m() {
+                    size = size.with_correlation_length_m(renumbered(length_m, kept)?);
+                }
                 Ok(CommonError {
                     data: error.data.clone(),
-                    size: sd.map_or(error.size, |sd| error.size.with_sd(sd)),
+                    size,
                 })
             });
         Self::with_common(

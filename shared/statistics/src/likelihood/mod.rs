@@ -6,6 +6,7 @@
 //! # Layout
 //! - `datum`: a measured value with its noise. `law`: normal or Student's t.
 //! - `common_error`: common errors, and the blocks that they create. `spread`: the covariance of a block.
+//! - `innovation`: errors that are autocorrelated along the travel of a run.
 //! - `error_model`: data, law and common errors together. `density`: their log-density.
 //! - `factor`: the factor of a block's covariance; `low_rank_factor`: that of a large block; `common_shift`: a block that needs none. `subset`: the
 //!   likelihood of selected data. `kept_parameters`: that of a model with some of the parameters.
@@ -18,6 +19,7 @@ mod datum;
 mod density;
 mod error_model;
 mod factor;
+mod innovation;
 mod kept_parameters;
 mod law;
 mod low_rank_factor;
@@ -32,5 +34,6 @@ pub use common_error::{
 };
 pub use datum::{Datum, ErrorSd, LikelihoodError};
 pub use error_model::Likelihood;
+pub use innovation::Innovation;
 pub use law::ErrorLaw;
 pub use whitening::Whitening;

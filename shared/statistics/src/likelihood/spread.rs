@@ -93,13 +93,13 @@ impl Likelihood {
         let mut common = Vec::with_capacity(block.common.len());
         for &c in &block.common {
             let CommonError { data, size } = &self.common[c];
-            let error: Vec<(usize, f64)> = match *size {
+            let error: Vec<(usize, f64)> = match size {
                 CommonErrorSize::Shift(sd) => {
                     let sd = sd.value(theta)?;
                     data.iter().map(|i| (position(i), sd)).collect()
                 }
                 CommonErrorSize::Discrepancy { group } => {
-                    let m = match self.discrepancies[group] {
+                    let m = match self.discrepancies[*group] {
                         Discrepancy::None => 0.0,
                         Discrepancy::Known(m) => m,
                         Discrepancy::Unknown => m,
@@ -110,8 +110,12 @@ impl Likelihood {
                 }
                 CommonErrorSize::Sensitivity { sd, derivative } => {
                     let sd = sd.value(theta)?;
+                    let derivative = *derivative;
                     let shift = |&datum: &usize| sd * values[self.place(Sensitive { derivative, datum })];
                     data.iter().map(|i| (position(i), shift(i))).collect()
+                }
+                CommonErrorSize::Innovation(innovation) => {
+                    data.iter().map(position).zip(innovation.shifts(theta)?).collect()
                 }
             };
             common.push(error);

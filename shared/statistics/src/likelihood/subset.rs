@@ -28,13 +28,7 @@ impl Likelihood {
         let common: Vec<CommonError> = self
             .common
             .iter()
-            .map(|error| CommonError {
-                data: (0..kept.len())
-                    .filter(|&k| error.data.contains(&kept[k]))
-                    .collect(),
-                size: error.size,
-            })
-            .filter(|error| !error.data.is_empty())
+            .filter_map(|error| error.within(kept))
             .collect();
         let subset = Self::with_common(data, self.law, common, self.discrepancies.clone())?;
         let places = self.places(kept, &subset);

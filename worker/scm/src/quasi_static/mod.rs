@@ -12,6 +12,7 @@
 //! - `start`: a closed-form first guess of the contact length.
 //! - `balance`: the contact length at which the soil carries the wheel load.
 //! - `crossing`: the first of several balances that the wheel meets as it sinks.
+//! - `transient`: the sinkage on the way to the steady state.
 
 mod balance;
 mod crossing;
@@ -27,12 +28,14 @@ mod reshaped;
 mod rim;
 mod start;
 mod straight;
+mod transient;
 
 use footing::Footing;
 use formula::Variable;
 use reshaped::{Mechanics, Panels, Reshaping};
 use rim::Rim;
 pub use straight::StraightGrousers;
+pub use transient::{Way, transient_sinkage};
 
 use crate::effects::{Active, Site};
 use crate::pressure_sinkage::k_star;

@@ -23,6 +23,14 @@ impl History {
         self.sinkage_m.len()
     }
 
+    /// Returns the sinkage after a number of steps `[m]`, by linear interpolation; `None` beyond the last.
+    pub fn sinkage_at(&self, steps: f64) -> Option<f64> {
+        let before = steps.max(0.0).floor();
+        let (here, next) = (before as usize, self.sinkage_m.get(before as usize + 1));
+        let next = *next?;
+        Some(self.sinkage_m[here] + (steps.max(0.0) - before) * (next - self.sinkage_m[here]))
+    }
+
     /// Returns whether there is no step yet.
     pub fn is_empty(&self) -> bool {
         self.sinkage_m.is_empty()
