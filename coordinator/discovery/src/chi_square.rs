@@ -65,7 +65,7 @@ impl FitChiSquare {
             }
             match kept.len() == data.len() {
                 true => Self::of_fit(fit, &declared),
-                false => Self::of_fit(&fit.of_values(&kept), &declared),
+                false => Self::of_fit(&of_values(fit, &kept), &declared),
             }
         })
     }
@@ -108,4 +108,13 @@ pub(crate) fn residuals(fit: &LaplaceFit, likelihood: &Likelihood) -> Vec<f64> {
             ErrorSd::Inferred { .. } => 0.0,
         })
         .collect()
+}
+
+/// Returns a fit with some of its predicted values.
+fn of_values(fit: &LaplaceFit, kept: &[usize]) -> LaplaceFit {
+    let select = |values: &[f64]| kept.iter().map(|&i| values[i]).collect();
+    let mut part = fit.clone();
+    part.point.values = select(&fit.point.values);
+    part.columns = fit.columns.iter().map(|column| select(column)).collect();
+    part
 }

@@ -450,15 +450,6 @@ impl LaplaceFit {
         }
     }
 
-    /// Returns the fit with some of its predicted values.
-    pub(crate) fn of_values(&self, kept: &[usize]) -> LaplaceFit {
-        let select = |values: &[f64]| kept.iter().map(|&i| values[i]).collect();
-        let mut part = self.clone();
-        part.point.values = select(&self.point.values);
-        part.columns = self.columns.iter().map(|column| select(column)).collect();
-        part
-    }
-
     pub(crate) fn quadratic(&self, likelihood: &Likelihood) -> QuadraticModel {
         QuadraticModel {
             held: self.held.clone(),
