@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn a_finer_step_changes_nothing() {
-        // explicit Euler with tiny steps of the equation as it is written
+        // The midpoint method with tiny steps of the equation as it is written; explicit Euler errs by 1e-4 at the steepest start.
         for (start, exponent, ways) in [
             (0.1, 1.9, 0.5),
             (0.4, 1.3, 1.5),
@@ -186,10 +186,14 @@ mod tests {
             (1.0, 2.0, 1.0),
         ] {
             let steps = 200_000;
+            let step = ways / f64::from(steps);
+            let slope = |share: f64| {
+                let carried = if share > 0.0 { share.powf(exponent) } else { 0.0 };
+                (1.0 - carried) / exponent
+            };
             let mut share: f64 = start;
             for _ in 0..steps {
-                let carried = if share > 0.0 { share.powf(exponent) } else { 0.0 };
-                share += (1.0 - carried) / exponent * ways / f64::from(steps);
+                share += step * slope(share + 0.5 * step * slope(share));
             }
             let found = Settling::new(start, exponent).share_after(ways);
             assert!(
