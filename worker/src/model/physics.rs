@@ -120,7 +120,8 @@ impl PhysicsAt<'_> {
     /// other models settle from the start that the transient states.
     ///
     /// # Errors
-    /// Those of [`quasi_static::transient_sinkage`]; a rolled wheel that settles by less than [`MIN_SETTLEMENT_M`] has no share of it.
+    /// [`quasi_static::transient_sinkage`] states the errors of a settling wheel. A rolled wheel that settles by less than
+    /// [`MIN_SETTLEMENT_M`] is refused where a steady sinkage is stated.
     pub(super) fn transient_sinkage(
         &self,
         run: &Run,

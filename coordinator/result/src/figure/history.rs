@@ -105,7 +105,7 @@ impl FinishedCalibration {
             let Some((run, history)) = run.and_then(|run| Some((run, run.history.as_ref()?))) else {
                 continue;
             };
-            if shown.iter().any(|other| repeats(other, run)) {
+            if shown.iter().any(|earlier| repeats(earlier, run)) {
                 continue;
             }
             shown.push(run);
@@ -139,13 +139,13 @@ pub(super) fn all(study: &Study) -> Option<Vec<ChannelHistory>> {
     let mut each = study.submitted().filter_map(FinishedCalibration::histories);
     let mut histories = each.next()?;
     for further in each {
-        for other in further {
+        for added in further {
             let is_same = |history: &&mut ChannelHistory| {
-                (history.channel, &history.run) == (other.channel, &other.run)
+                (history.channel, &history.run) == (added.channel, &added.run)
             };
             match histories.iter_mut().find(is_same) {
-                Some(history) => history.model.extend(other.model),
-                None => histories.push(other),
+                Some(history) => history.model.extend(added.model),
+                None => histories.push(added),
             }
         }
     }

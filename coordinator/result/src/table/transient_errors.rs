@@ -39,7 +39,7 @@ pub struct TransientErrors {
     pub runs: usize,
     /// Error of the posterior mean `[m]`.
     pub rmse_m: f64,
-    /// Error where the prediction settles to the corrected steady sinkage `[m]`; null where no run of the group has one.
+    /// Error where the prediction settles to the corrected steady sinkage `[m]`; null where no run of the group has a corrected prediction.
     pub corrected_rmse_m: Option<f64>,
 }
 
@@ -136,7 +136,11 @@ impl TransientErrors {
     }
 
     fn of_group(transients: &[PredictedTransient], group: Option<HoldoutGroup>) -> Option<Self> {
-        let members = || transients.iter().filter(|one| one.row.holdout_group == group);
+        let members = || {
+            transients
+                .iter()
+                .filter(|transient| transient.row.holdout_group == group)
+        };
         let rmse = |error: &dyn Fn(&PredictedTransient) -> Option<Vec<f64>>| {
             let squares: Vec<f64> = members()
                 .filter_map(error)
@@ -155,8 +159,10 @@ impl TransientErrors {
             },
             holdout_group: group,
             runs: members().count(),
-            rmse_m: rmse(&|one| Some(errors(&one.measured_m, &one.predicted_m)))?,
-            corrected_rmse_m: rmse(&|one| Some(errors(&one.measured_m, one.corrected_m.as_ref()?))),
+            rmse_m: rmse(&|transient| Some(errors(&transient.measured_m, &transient.predicted_m)))?,
+            corrected_rmse_m: rmse(&|transient| {
+                Some(errors(&transient.measured_m, transient.corrected_m.as_ref()?))
+            }),
         })
     }
 }

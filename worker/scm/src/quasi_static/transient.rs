@@ -195,18 +195,21 @@ mod tests {
             for _ in 0..steps {
                 share += step * slope(share + 0.5 * step * slope(share));
             }
-            let found = Settling::new(start, exponent).share_after(ways);
+            let computed = Settling::new(start, exponent).share_after(ways);
             assert!(
-                (found - share).abs() < 1e-5,
-                "{start} {exponent} {ways}: {found}, {share}"
+                (computed - share).abs() < 1e-5,
+                "{start} {exponent} {ways}: {computed}, {share}"
             );
         }
     }
 
     #[test]
     fn a_linear_soil_forgets_its_start_exponentially() {
-        let found = Settling::new(0.2, 1.0).share_after(1.7);
-        assert!((found - (1.0 - 0.8 * (-1.7_f64).exp())).abs() < 1e-9, "{found}");
+        let computed = Settling::new(0.2, 1.0).share_after(1.7);
+        assert!(
+            (computed - (1.0 - 0.8 * (-1.7_f64).exp())).abs() < 1e-9,
+            "{computed}"
+        );
     }
 
     #[test]
