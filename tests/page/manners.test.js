@@ -213,6 +213,20 @@ test("a view that is gone back to is where the reader left it", () =>
     await page.waitForFunction(() => Math.abs(scrollY - 150) < 3);
   }));
 
+test("a slow machine finds the place of a view that is gone back to", () =>
+  within({ height: 600 }, async (page) => {
+    await go(page, "#/studies/1/compare");
+    await page.evaluate(() => scrollTo(0, 150));
+    await page.waitForFunction(() => history.state?.top === 150);
+    await page.getByRole("link", { name: "Where it fails", exact: true }).click();
+    await page.locator("section.view.failures figure .plot > svg").first().waitFor();
+    const session = await page.context().newCDPSession(page);
+    await session.send("Emulation.setCPUThrottlingRate", { rate: 40 });
+    await page.goBack();
+    await page.waitForFunction(() => Math.abs(scrollY - 150) < 3);
+    assert.equal(await page.evaluate(() => history.state.top), 150);
+  }));
+
 test("parts that were opened are open in a view that is gone back to, and closed in a new one", () =>
   within({}, async (page) => {
     await go(page, "#/studies/1/compare");

@@ -3,6 +3,15 @@
 import { html as template } from "../vendor/preact.js";
 import { inLanguage } from "./language/language.js";
 
-export { render, useCallback, useEffect, useErrorBoundary, useMemo, useRef, useState } from "../vendor/preact.js";
+export {
+  render,
+  useCallback,
+  useEffect,
+  useErrorBoundary,
+  useLayoutEffect,
+  useMemo,
+  useRef,
+  useState,
+} from "../vendor/preact.js";
 
 export const html = inLanguage(template);

@@ -3,8 +3,10 @@
 
 /** @typedef {{ top?: number, open?: string[] } | null} Left */
 
-/** So long a view that is gone back to may take to be as it was [ms]. */
-const GROW_MS = 3000;
+/** So long a view that is gone back to may take to be as it was, on a slow machine [ms]. */
+const GROW_MS = 30_000;
+/** What a reader does who no longer waits for the place that was left. */
+const READER_MOVES = ["wheel", "touchmove", "pointerdown", "keydown"];
 /** So long nothing happens before a place is kept [ms]. */
 const REST_MS = 150;
 
@@ -14,14 +16,22 @@ const keyOf = (/** @type {HTMLElement} */ part) =>
 
 /** Parts that were open and are not there yet. @type {Set<string>} */
 let awaited = new Set();
+/** Whether the view has yet to grow to the place that was left. Where it is until then is not kept. */
+let isGrowing = false;
 
 /** Keeps how a view is left. @returns {() => void} ends it */
 export function keepLeftView() {
+  // A browser that restores the place does so in the view that is about to go.
+  history.scrollRestoration = "manual";
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
   const keep = () => {
     clearTimeout(timer);
+    if (isGrowing) return;
+    const { hash } = location;
     timer = setTimeout(() => {
+      // The entry in the history is that of another view by now.
+      if (location.hash !== hash) return;
       const open = [
         .../** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("#content details[open]")),
       ].map(keyOf);
@@ -45,14 +55,17 @@ export function arrive() {
   const { top = 0, open = [] } = /** @type {Left} */ (history.state) ?? {};
   scrollTo(0, top);
   awaited = new Set(open);
-  if (top === 0 && open.length === 0) return () => undefined;
+  isGrowing = top !== 0;
+  if (!isGrowing && open.length === 0) return () => undefined;
   const content = /** @type {HTMLElement} */ (document.getElementById("content"));
-  let isThere = top === 0;
   const look = () => {
     for (const part of content.querySelectorAll("details")) if (awaited.delete(keyOf(part))) part.open = true;
-    if (!isThere) scrollTo(0, top);
-    isThere ||= Math.abs(scrollY - top) < 2;
-    if (isThere && awaited.size === 0) end();
+    if (isGrowing) scrollTo(0, top);
+    if (Math.abs(scrollY - top) < 2) isGrowing = false;
+    if (!isGrowing && awaited.size === 0) end();
+  };
+  const moved = () => {
+    isGrowing = false;
   };
   const parts = new MutationObserver(look);
   const size = new ResizeObserver(look);
@@ -60,9 +73,12 @@ export function arrive() {
     parts.disconnect();
     size.disconnect();
     clearTimeout(timer);
+    for (const move of READER_MOVES) removeEventListener(move, moved);
     awaited.clear();
+    isGrowing = false;
   };
   const timer = setTimeout(end, GROW_MS);
+  for (const move of READER_MOVES) addEventListener(move, moved, { passive: true });
   parts.observe(content, { childList: true, subtree: true });
   size.observe(content);
   return end;

@@ -1,6 +1,6 @@
 // The page of a service: the home of all studies, or one study in one of its views.
 
-import { html, render, useEffect, useState } from "./html.js";
+import { html, render, useEffect, useLayoutEffect, useState } from "./html.js";
 import { t } from "./language/language.js";
 import { arrive, keepLeftView } from "./left_view.js";
 import { Later } from "./part/later.js";
@@ -22,7 +22,8 @@ function Page() {
   const isBeside =
     first === "beside" && route.place.slice(1, 3).every((one) => /^\d+$/.test(one)) && route.place.length === 3;
   const isStudy = first === "studies" && /^\d+$/.test(id ?? "");
-  useEffect(() => {
+  // Before the view is painted: a place that is kept in between would be that of the view before it.
+  useLayoutEffect(() => {
     document.getElementById("content")?.focus({ preventScroll: true });
     return arrive();
   }, [first, id, view]);
