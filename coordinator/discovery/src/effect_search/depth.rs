@@ -32,6 +32,8 @@ pub(crate) struct ScreenDepth {
     pub(crate) shapes: &'static [f64],
     /// Coordinates of the second of two shapes, each combined with each of the first. Empty: the second has that of the first.
     pub(crate) second_shapes: &'static [f64],
+    /// How many candidates, the best of a screen without the model, are screened on it.
+    pub(crate) max_on_model: usize,
 }
 
 /// The first fits of candidates.
@@ -127,6 +129,7 @@ pub(crate) const FULL: Depth = Depth {
         strengths: &[1.0, 0.3, 0.1],
         shapes: &[0.0, -1.0, 1.0],
         second_shapes: &[],
+        max_on_model: usize::MAX,
     },
     extension: ExtensionDepth {
         max_count: usize::MAX,
@@ -157,6 +160,7 @@ pub(crate) const SPARING: Depth = Depth {
     },
     screen: ScreenDepth {
         strengths: &[1.0, 0.3],
+        max_on_model: 8,
         ..FULL.screen
     },
     extension: ExtensionDepth {
@@ -191,6 +195,10 @@ pub(crate) const SPARING: Depth = Depth {
 
 /// A further effect beyond one of the best combinations. Nothing is confirmed, so the refinement must converge.
 pub(crate) const QUICK: Depth = Depth {
+    screen: ScreenDepth {
+        max_on_model: 48,
+        ..FULL.screen
+    },
     extension: ExtensionDepth {
         max_count: 8,
         ..FULL.extension
@@ -205,6 +213,10 @@ pub(crate) const QUICK: Depth = Depth {
 
 /// A further effect of a rough model beyond one of the best combinations.
 pub(crate) const SPARING_QUICK: Depth = Depth {
+    screen: ScreenDepth {
+        max_on_model: 4,
+        ..SPARING.screen
+    },
     extension: ExtensionDepth {
         max_count: 4,
         reach: None,
@@ -223,7 +235,8 @@ pub(crate) const GLANCE: Depth = Depth {
     screen: ScreenDepth {
         strengths: &[1.0, 0.3],
         shapes: &[0.0],
-        second_shapes: &[],
+        max_on_model: 24,
+        ..FULL.screen
     },
     extension: ExtensionDepth {
         max_count: 6,
@@ -276,7 +289,7 @@ pub(crate) const FORMULAS: Depth = Depth {
     screen: ScreenDepth {
         strengths: &[0.5],
         shapes: &[0.0],
-        second_shapes: &[],
+        ..FULL.screen
     },
     extension: ExtensionDepth {
         plan: &[FitStep::Rounds { max: 2, trials: 6 }],

@@ -78,7 +78,7 @@ impl EffectSearch {
         };
         let all = || 0..self.candidates.len();
         let best = all().filter_map(|k| promise(&k)).fold(DETECTED, f64::max);
-        let near = self.best(self.depth.extension.max_count);
+        let near = self.best(self.depth.screen.max_on_model);
         let is_worth = |k: &usize| {
             let Some(factor) = promise(k) else { return true };
             let is_within_reach = self

@@ -6,6 +6,7 @@ use crate::effect_search::screen_result::{Evaluated, Screened, screened};
 use crate::effect_search::state::{EffectSearch, Phase};
 use crate::laplace::batch::PositionRequest;
 use crate::laplace::coordinate::NormalFrame;
+use crate::settings::Smoothness;
 
 /// Steps of each of several strengths; the next one is tried if the model rejects the last. A single strength has the steps of the
 /// [`ScreenDepth`], and then the last of these; where it was screened without the model, the best and the longest of that screen, and then
@@ -95,17 +96,17 @@ impl EffectSearch {
     /// Evaluates candidates at the strengths of a step.
     pub(super) fn screen(&mut self, step_index: usize, candidates: Vec<usize>) {
         let Some(base) = &self.base else { return };
+        let is_smooth = self.smoothness() == Smoothness::Smooth;
         let mut requests = Vec::new();
         for &k in &candidates {
-            let frame = &self.candidates[k].frame;
+            let state = &mut self.candidates[k];
+            if is_smooth {
+                // Its evaluations are cheap: the screen without the model has only chosen the candidate.
+                state.low_fidelity = None;
+            }
             let base = &base.fit.point.position;
-            let positions = positions(
-                frame,
-                base,
-                &self.depth.screen,
-                self.candidates[k].low_fidelity.as_ref(),
-                step_index,
-            );
+            let screened = state.low_fidelity.as_ref();
+            let positions = positions(&state.frame, base, &self.depth.screen, screened, step_index);
             requests.extend(PositionRequest::all_for_model(Some(k), positions));
         }
         if requests.is_empty() && step_index + 1 < STEPS.len() {

@@ -20,7 +20,7 @@ pub(super) struct Screened {
     /// Change of the predictions per unit of the strength's coordinate, over its longest step; with several strengths, the change
     /// by the linear solution.
     pub(super) change: Vec<f64>,
-    /// Derivatives along the candidate's own coordinates, in the order of the frame; zeros for the base's coordinates.
+    /// Derivatives along the candidate's own coordinates, in the order of the frame; empty for the base's coordinates.
     pub(super) columns: Vec<Vec<f64>>,
     /// The step over which the change of a single strength was taken; 1 otherwise.
     pub(super) longest_step: f64,
@@ -91,7 +91,8 @@ fn screen_one_strength(
         .iter()
         .filter(|node| has_shape_of(node, best, &shapes))
         .reduce(|a, b| if b.step > a.step { b } else { a })?;
-    let mut columns = vec![vec![0.0; best.point.values.len()]; frame.dimension()];
+    let mut columns = vec![Vec::new(); fit.columns.len()];
+    columns.resize(frame.dimension(), vec![0.0; best.point.values.len()]);
     for &shape in &shapes {
         if let Some(column) = shape_column(shape, &shapes, best, usual, &nodes) {
             columns[shape] = column;
@@ -264,9 +265,7 @@ fn screen_several_strengths(
     let change = (0..absent.values.len())
         .map(|i| strengths().map(|k| solution[k] * columns[k][i]).sum())
         .collect();
-    for column in &mut columns[..fit.columns.len()] {
-        column.fill(0.0);
-    }
+    columns[..fit.columns.len()].fill(Vec::new());
     Some(Screened {
         point: absent,
         change,

@@ -21,7 +21,7 @@ pub(super) struct SearchState {
     pub(super) evaluations: usize,
     /// Numerical noise sd of each channel by its index, in its unit; empty where it is negligible.
     pub(super) numerical_noise_sds: Vec<f64>,
-    /// What each candidate of a rough model changes of the base's predictions; empty for other models.
+    /// What each candidate of the library changes of the base's predictions.
     changes: Vec<Option<CandidateChange>>,
     /// The models that were fitted without each level.
     refitted: BTreeMap<ModelKey, RefittedModel>,
@@ -64,11 +64,9 @@ impl SearchState {
         }
     }
 
-    /// Keeps what the candidates change, where the screen beyond each combination would cost too many evaluations.
+    /// Keeps what the candidates change: it selects those that are screened beyond a combination.
     pub(super) fn take_changes(&mut self, search: &EffectSearch) {
-        if search.smoothness() != Smoothness::Smooth {
-            self.changes = search.changes();
-        }
+        self.changes = search.changes();
     }
 
     /// Returns whether combinations of effects that explain little alone are searched: the best explanation contradicts the data,
