@@ -25,6 +25,9 @@ struct Example {
     /// Further arguments of `coordinator run`.
     #[serde(default)]
     arguments: Vec<String>,
+    /// Whether the run takes more than a minute.
+    #[serde(default)]
+    is_slow: bool,
     /// The verdicts of all searches, in their order.
     verdicts: Option<Vec<String>>,
     /// A passage, then the places of the numbers that follow it.
@@ -151,13 +154,21 @@ fn contradictions(example: &Example, readme: &str, summary: &Value) -> Vec<Strin
     found
 }
 
-/// Runs the jobs of a README, and compares their results with its figures.
+/// Runs the quick jobs of a README, and compares their results with its figures.
 #[track_caller]
 fn hold(readme: &str) {
+    hold_those(readme, false);
+}
+
+/// Runs the slow or the quick jobs of a README.
+#[track_caller]
+fn hold_those(readme: &str, slow: bool) {
     let examples = root().join("examples");
     let text = text(&examples.join(readme));
     let mut wrong = Vec::new();
-    for example in list().example.iter().filter(|example| example.readme == readme) {
+    let list = list();
+    let examples_of_readme = list.example.iter().filter(|example| example.readme == readme);
+    for example in examples_of_readme.filter(|example| example.is_slow == slow) {
         let out = tempfile::tempdir().expect("a folder");
         let arguments = example
             .arguments
@@ -212,6 +223,12 @@ fn cmu_sand_gives_the_figures_of_its_readme() {
 }
 
 #[test]
+#[ignore = "it takes a minute and a half on two cores"]
+fn cmu_sand_gives_the_figures_of_its_slow_runs() {
+    hold_those("cmu-sand/README.md", true);
+}
+
+#[test]
 fn every_job_of_the_examples_is_held_or_listed_as_not_held() {
     let list = list();
     let folder = root().join("examples");
@@ -253,6 +270,7 @@ fn a_figure_that_the_program_does_not_give_is_told() {
         readme: String::new(),
         job: String::new(),
         arguments: Vec::new(),
+        is_slow: false,
         verdicts: Some(vec!["named".into()]),
         figures: vec![vec![
             "| base |".into(),
