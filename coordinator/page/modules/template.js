@@ -63,6 +63,7 @@ ${entries.join("\n")}
 export const SEARCHES = [
   ["ask", t`search for a missing effect and report it`],
   ["auto", t`search, and add what is found`],
+  ["leading", t`search, and also add what leads but is not named: for predictions`],
   ["off", t`calibrate alone`],
 ];
 
@@ -188,6 +189,6 @@ ${lines.join("\n")}
 ${algorithm}seed = 1
 
 [discovery]
-apply = "${search}"                 # "ask": search for a missing effect and report it; "auto" also adds it; "off": none
+apply = "${search}"     # "ask": report a missing effect; "auto": also add it; "leading": or what leads; "off": none
 `;
 }

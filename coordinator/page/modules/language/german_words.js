@@ -376,6 +376,8 @@ export const WORDS = {
   "search for a missing effect": "Suche nach einem fehlenden Effekt",
   "Search for the missing effect": "Den fehlenden Effekt suchen",
   "search, and add what is found": "suchen und hinzufügen, was gefunden wird",
+  "search, and also add what leads but is not named: for predictions":
+    "suchen und auch hinzufügen, was führt, aber nicht benannt wird: für Vorhersagen",
   "second": "zweites",
   "Sections": "Abschnitte",
   "See it run": "Zusehen",
