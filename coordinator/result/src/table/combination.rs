@@ -174,7 +174,7 @@ mod tests {
                 panic!("two models and the measurements");
             };
             let measured = alone.at(run, channel).map_or(0.0, |corrected| corrected.mean);
-            let expected = (u * a + v * b + w * measured) / (u + v + w);
+            let expected = (u * a + v * b + 2.0 * w * measured) / (u + v + 2.0 * w);
             assert!(
                 (combined.mean.unwrap() - expected).abs() < 1e-12,
                 "{} {expected}",
