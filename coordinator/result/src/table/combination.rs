@@ -174,7 +174,9 @@ mod tests {
                 panic!("two models and the measurements");
             };
             let measured = alone.at(run, channel).map_or(0.0, |corrected| corrected.mean);
-            let expected = (u * a + v * b + 2.0 * w * measured) / (u + v + 2.0 * w);
+            let of_models = (u * a + v * b) / (u + v);
+            let best = u.max(v);
+            let expected = (best * of_models + w * measured) / (best + w);
             assert!(
                 (combined.mean.unwrap() - expected).abs() < 1e-12,
                 "{} {expected}",

@@ -13,8 +13,8 @@ const TO_Q95: f64 = 1.644_853_626_951_472_7;
 ///
 /// `p(y) = sum_k w_k N(y; m_k, s_k)` with the corrected prediction `m_k` of model k, and `s_k` from its 90 % interval. The weight `w_k`
 /// is proportional to 1 over the mean square error of the channel's fitted runs, each corrected without all runs at its level of a
-/// condition; that of the measurements alone to this times the number of models. A rig has too few levels to support sharper weights,
-/// which would select the best model.
+/// condition; all models together weigh as the best of them beside the measurements alone. A rig has too few levels to support sharper
+/// weights, which would select the best model.
 ///
 /// # Source
 /// Bates & Granger 1969, doi:10.1057/jors.1969.103. Checked by `models_that_err_to_both_sides_are_better_together` and others below.
@@ -31,10 +31,9 @@ pub struct CombinedRow {
 }
 
 impl CombinedRow {
-    /// Averages the corrected predictions of the models and the prediction by the measurements alone, which come with their weights for one
-    /// voice each. The models extend each other, and the parameters of each know the level that was left out, so that they err together and
-    /// by more than they tell: against all of them the measurements alone have as many voices as there are models. Where no model counts, the
-    /// measurements alone are no combination.
+    /// Averages the corrected predictions of the models and the prediction by the measurements alone, which come with their weights. The models
+    /// extend each other, and the parameters of each know the level that was left out, so that they err together and by more than they tell:
+    /// beside the measurements alone, all of them have the weight of the best. Where no model counts, the measurements alone are no combination.
     pub(super) fn new(
         row: &ComparisonRow,
         of_models: &[(Option<Corrected>, f64)],
@@ -45,8 +44,16 @@ impl CombinedRow {
         let models = of_models.iter().filter_map(with_prediction).filter(is_counted);
         let mut counted: Vec<(Corrected, f64)> = models.collect();
         let models = counted.len();
-        let of_measurements = of_measurements.map(|(predicted, weight)| (predicted, weight * models as f64));
-        counted.extend(of_measurements.filter(is_counted));
+        let of_models = counted.iter().map(|(_, weight)| *weight);
+        let (sum, max) = of_models.fold((0.0_f64, 0.0_f64), |(sum, max), weight| {
+            (sum + weight, max.max(weight))
+        });
+        let beside_models = |(predicted, weight): (Corrected, f64)| (predicted, weight * sum / max);
+        counted.extend(
+            of_measurements
+                .filter(|counted| models > 0 && is_counted(counted))
+                .map(beside_models),
+        );
         let total: f64 = counted.iter().map(|(_, weight)| weight).sum();
         let shares = counted
             .iter()
@@ -122,6 +129,7 @@ mod tests {
         };
         let beside_one = combine(&[Some(0.0)]);
         assert_eq!((beside_one.mean, beside_one.models), (Some(3.0), 1));
+        // Two alike are no more than one.
         let beside_two = combine(&[Some(0.0), None, Some(0.0)]);
         assert_eq!((beside_two.mean, beside_two.models), (Some(3.0), 2));
         let without = combine(&[None]);
