@@ -1,8 +1,8 @@
 //! What candidates change of the predictions, as their screen beyond the base has found it.
 //!
-//! A screen of all candidates beyond each combination costs most of the evaluations of a search. A candidate changes the predictions of a
-//! combination nearly as it changed those of the base, so this takes the place of the low-fidelity screen where there is none, or where it
-//! shows nothing: it selects the candidates that are worth evaluations.
+//! A screen of all candidates beyond each combination may cost a quarter of the evaluations of a search. A candidate changes the
+//! predictions of a combination nearly as it changed those of the base, so this takes the place of the low-fidelity screen where there is
+//! none, or where it shows nothing: it selects the candidates that are worth evaluations.
 
 use crate::effect_search::screen_result::{Screened, screened};
 use crate::effect_search::state::{CandidateState, EffectSearch, EvidenceEstimate};
