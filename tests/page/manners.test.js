@@ -201,13 +201,18 @@ test("the pictures of a view are one stop of the tab key each, and arrows go bet
     }
   }));
 
+/** Leaves a view that is scrolled by 150 pixels for another one. */
+async function leaveScrolled(page) {
+  await go(page, "#/studies/1/compare");
+  await page.evaluate(() => scrollTo(0, 150));
+  await page.waitForFunction(() => history.state?.top === 150);
+  await page.getByRole("link", { name: "Where it fails", exact: true }).click();
+  await page.locator("section.view.failures figure .plot > svg").first().waitFor();
+}
+
 test("a view that is gone back to is where the reader left it", () =>
   within({ height: 600 }, async (page) => {
-    await go(page, "#/studies/1/compare");
-    await page.evaluate(() => scrollTo(0, 150));
-    await page.waitForFunction(() => history.state?.top === 150);
-    await page.getByRole("link", { name: "Where it fails", exact: true }).click();
-    await page.locator("section.view.failures figure .plot > svg").first().waitFor();
+    await leaveScrolled(page);
     assert.equal(await page.evaluate(() => scrollY), 0);
     await page.goBack();
     await page.waitForFunction(() => Math.abs(scrollY - 150) < 3);
@@ -215,11 +220,7 @@ test("a view that is gone back to is where the reader left it", () =>
 
 test("a slow machine finds the place of a view that is gone back to", () =>
   within({ height: 600 }, async (page) => {
-    await go(page, "#/studies/1/compare");
-    await page.evaluate(() => scrollTo(0, 150));
-    await page.waitForFunction(() => history.state?.top === 150);
-    await page.getByRole("link", { name: "Where it fails", exact: true }).click();
-    await page.locator("section.view.failures figure .plot > svg").first().waitFor();
+    await leaveScrolled(page);
     const session = await page.context().newCDPSession(page);
     await session.send("Emulation.setCPUThrottlingRate", { rate: 40 });
     await page.goBack();

@@ -1,11 +1,9 @@
 //! Effects that do little alone and much together, on a model that is linear in their strengths.
 
-use crate::setup::{self, data, effect, normal};
-use discovery::{
-    Candidate, Conclusion, DETECTED, ProposedRuns, QueriedModel, Query, SearchSettings, SearchTask,
-};
+use crate::setup::{self, best_effects, data, effect, normal, pair_task};
+use discovery::{Candidate, Conclusion, DETECTED, QueriedModel, Query};
 use statistics::rng::Stream;
-use statistics::{CommonError, CommonErrorSize, Discrepancy, ErrorLaw, Likelihood, Prior};
+use statistics::{CommonError, CommonErrorSize, Discrepancy, ErrorLaw, Likelihood};
 
 const DATA: usize = 24;
 /// The model lacks the difference of these two; either alone is nearly the same parabola, which the model has.
@@ -69,27 +67,8 @@ fn found_in(library: Vec<Candidate>, wave: f64, sd: f64, has_discrepancy: bool) 
     };
     let likelihood =
         Likelihood::with_common(data(&values, sd), ErrorLaw::Gaussian, common, vec![discrepancy]).unwrap();
-    let task = SearchTask {
-        prior: Prior::new(vec![normal(1.0), normal(1.0)]),
-        likelihood,
-        library,
-        laws: Vec::new(),
-        strengths: Vec::new(),
-        reductions: Vec::new(),
-        levels: Vec::new(),
-        conditions: Vec::new(),
-        proposed: ProposedRuns::default(),
-        suspected_errors: Vec::new(),
-        max_effects: 2,
-        settings: SearchSettings::default(),
-    };
+    let task = pair_task(vec![normal(1.0), normal(1.0)], likelihood, library);
     setup::conclude(task, false, |query| Some(predict(wave, query)))
-}
-
-fn effects(conclusion: &Conclusion) -> Vec<usize> {
-    let mut effects = conclusion.combination.clone();
-    effects.sort_unstable();
-    effects
 }
 
 #[test]
@@ -99,14 +78,14 @@ fn two_effects_that_do_little_alone_are_found_together() {
         let alone = conclusion.ranking.effect(Some(k)).unwrap().log_bayes_factor;
         assert!(alone < DETECTED, "{k}: {alone}");
     }
-    assert_eq!(effects(&conclusion), [WAVY, PLAIN]);
+    assert_eq!(best_effects(&conclusion), [WAVY, PLAIN]);
 }
 
 #[test]
 fn an_unknown_discrepancy_does_not_hide_what_two_effects_explain() {
     // Alone, one effect absorbs nothing, little, or much of the discrepancy.
     for wave in [0.15, 0.5, 0.8] {
-        assert_eq!(effects(&conclude(wave, 0.01, true)), [WAVY, PLAIN], "{wave}");
+        assert_eq!(best_effects(&conclude(wave, 0.01, true)), [WAVY, PLAIN], "{wave}");
     }
 }
 
@@ -115,11 +94,11 @@ fn a_family_is_found_where_others_seem_better() {
     // Copies of the steps crowd the two out of the beam.
     let mut library = library(4 * STEPS);
     assert_ne!(
-        effects(&found_in(library.clone(), 0.15, 0.1, false)),
+        best_effects(&found_in(library.clone(), 0.15, 0.1, false)),
         [WAVY, PLAIN]
     );
     for k in [WAVY, PLAIN] {
         library[k].family = Some("parabola".into());
     }
-    assert_eq!(effects(&found_in(library, 0.15, 0.1, false)), [WAVY, PLAIN]);
+    assert_eq!(best_effects(&found_in(library, 0.15, 0.1, false)), [WAVY, PLAIN]);
 }

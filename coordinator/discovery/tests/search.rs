@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use crate::setup::{conclude, data, effect, marginal, noise, normal};
+use crate::setup::{best_effects, conclude, data, effect, marginal, noise, normal};
 use discovery::{
     Candidate, Conclusion, DETECTED, EvidenceMethod, LawCandidate, OutsideLaw, ProposedRuns, QueriedModel,
     Query, Reduction, SearchSettings, SearchTask, SearchVerdict,
@@ -292,9 +292,7 @@ fn every_explanation_has_its_predicted_values() {
 #[test]
 fn two_effects_are_found_together() {
     let conclusion = find(|x, w| 0.3 + 0.8 * x * x + 0.7 * w * x);
-    let mut best = conclusion.combination.clone();
-    best.sort_unstable();
-    assert_eq!(best, [SQUARE, WIDTH]);
+    assert_eq!(best_effects(&conclusion), [SQUARE, WIDTH]);
     assert!(
         matches!(conclusion.verdict, SearchVerdict::Named(SQUARE | WIDTH)),
         "{:?}",

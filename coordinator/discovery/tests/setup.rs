@@ -1,10 +1,11 @@
 //! Priors, candidates, data and runs that several tests share.
 
 use discovery::{
-    Candidate, Conclusion, DiscoverySearch, EffectRanking, EffectRequest, EffectSearch, Query, SearchTask,
+    Candidate, Conclusion, DiscoverySearch, EffectRanking, EffectRequest, EffectSearch, ProposedRuns, Query,
+    SearchSettings, SearchTask,
 };
 use inference::TellProgress;
-use statistics::{Datum, Distribution, ErrorSd, Marginal};
+use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal, Prior};
 
 pub(crate) fn marginal(distribution: Distribution) -> Marginal {
     Marginal::new(distribution, None).unwrap()
@@ -41,6 +42,31 @@ pub(crate) fn data(values: &[f64], sd: f64) -> Vec<Datum> {
         sd: ErrorSd::Known(sd),
     };
     values.iter().enumerate().map(datum).collect()
+}
+
+/// A search of at most two effects of a library, without laws and proposed runs.
+pub(crate) fn pair_task(prior: Vec<Marginal>, likelihood: Likelihood, library: Vec<Candidate>) -> SearchTask {
+    SearchTask {
+        prior: Prior::new(prior),
+        likelihood,
+        library,
+        laws: Vec::new(),
+        strengths: Vec::new(),
+        reductions: Vec::new(),
+        levels: Vec::new(),
+        conditions: Vec::new(),
+        proposed: ProposedRuns::default(),
+        suspected_errors: Vec::new(),
+        max_effects: 2,
+        settings: SearchSettings::default(),
+    }
+}
+
+/// The effects of the best combination, in order.
+pub(crate) fn best_effects(conclusion: &Conclusion) -> Vec<usize> {
+    let mut effects = conclusion.combination.clone();
+    effects.sort_unstable();
+    effects
 }
 
 /// The indices of a round in the order in which they are told.
