@@ -1,8 +1,12 @@
 //! Emulated sampling of problems with known evidence.
 
 use inference::{EmulatedSampler, TmcmcSettings};
+use statistics::likelihood::discrepancy_levels;
 use statistics::rng::Stream;
-use statistics::{Datum, Distribution, ErrorSd, Likelihood, Marginal, Prior};
+use statistics::{
+    CommonError, CommonErrorSize, Datum, Discrepancy, Distribution, ErrorLaw, ErrorSd, Likelihood, Marginal,
+    Prior,
+};
 
 use crate::output_problems::{self, OutputProblem};
 
@@ -145,10 +149,11 @@ fn abscissa(i: usize) -> f64 {
 ///
 /// # Arguments
 /// - `miss`: the data lie above and below 1 in turn, by this \[noise sds\].
-fn jumping_problem(outputs: fn(&[f64]) -> Option<Vec<f64>>, miss: f64) -> OutputProblem {
+/// - `bound`: the prior of both parameters is uniform between this and its negative.
+fn jumping_problem(outputs: fn(&[f64]) -> Option<Vec<f64>>, miss: f64, bound: f64) -> OutputProblem {
     let uniform = Distribution::Uniform {
-        lower: -5.0,
-        upper: 5.0,
+        lower: -bound,
+        upper: bound,
     };
     let datum = |run: usize| Datum {
         run,
@@ -166,11 +171,28 @@ fn jumping_problem(outputs: fn(&[f64]) -> Option<Vec<f64>>, miss: f64) -> Output
     }
 }
 
+/// Returns the log-evidence of the line without jumps for [`jumping_problem`], with independent normal errors.
+///
+/// # Arguments
+/// - `miss`, `bound`: as of [`jumping_problem`]. `variance`: that of an error.
+fn line_log_evidence(miss: f64, bound: f64, variance: f64) -> f64 {
+    let squares: f64 = (0..20).map(|i| abscissa(i) * abscissa(i)).sum();
+    // The alternation is orthogonal to the constant; its projection on the slope is taken out.
+    let alternation = |i: usize| if i.is_multiple_of(2) { miss } else { -miss };
+    let slope = (0..20).map(|i| alternation(i) * abscissa(i)).sum::<f64>() / squares;
+    let residuals = 20.0 * miss * miss - slope * slope * squares;
+    let two_pi = 2.0 * std::f64::consts::PI;
+    -0.5 * residuals / variance
+        - 9.0 * (two_pi * variance).ln()
+        - 0.5 * (20.0 * squares).ln()
+        - 2.0 * (2.0 * bound).ln()
+}
+
 /// A line with jumps of the size of the noise: the scatter is measured and becomes part of the error model.
 #[test]
 fn the_scatter_of_a_rough_model_is_measured() {
     const SCATTER: f64 = 0.5;
-    let problem = jumping_problem(|theta| Some(jumping_line(theta, SCATTER)), 0.0);
+    let problem = jumping_problem(|theta| Some(jumping_line(theta, SCATTER)), 0.0, 5.0);
     let sampler = run(&problem, 1, false);
     let record = sampler.record();
 
@@ -187,26 +209,50 @@ fn the_scatter_of_a_rough_model_is_measured() {
 fn scatter_below_the_noise_is_felt_where_the_model_misses_its_data() {
     const SCATTER: f64 = 0.05;
     const MISS: f64 = 12.0;
-    let problem = jumping_problem(|theta| Some(jumping_line(theta, SCATTER)), MISS);
+    let problem = jumping_problem(|theta| Some(jumping_line(theta, SCATTER)), MISS, 5.0);
     let sampler = run(&problem, 1, false);
     let record = sampler.record();
     assert!(!record.fell_back);
     let sd = record.numerical_noise[0];
     assert!((sd / SCATTER - 1.0).abs() < 0.3, "{record:?}");
 
-    let variance = 1.0 + sd * sd;
-    let squares: f64 = (0..20).map(|i| abscissa(i) * abscissa(i)).sum();
-    // The alternation is orthogonal to the constant; its projection on the slope is taken out.
-    let alternation = |i: usize| if i.is_multiple_of(2) { MISS } else { -MISS };
-    let slope = (0..20).map(|i| alternation(i) * abscissa(i)).sum::<f64>() / squares;
-    let residuals = 20.0 * MISS * MISS - slope * slope * squares;
-    let two_pi = 2.0 * std::f64::consts::PI;
-    let expected = -0.5 * residuals / variance
-        - 9.0 * (two_pi * variance).ln()
-        - 0.5 * (20.0 * squares).ln()
-        - 100_f64.ln();
+    let expected = line_log_evidence(MISS, 5.0, 1.0 + sd * sd);
     let posterior = sampler.posterior().unwrap();
     let error = posterior.log_evidence - expected;
+    assert!(error.abs() < 0.2, "{error} ± {}", posterior.log_evidence_se);
+}
+
+/// A line that misses its data by 20 noise sds, with jumps of half of one, beside a discrepancy that takes up the misfit: the jumps move the
+/// log-likelihood by far less than 20 noise sds would let them. The evidence is that of the line without jumps, in closed form at each size
+/// of the discrepancy.
+#[test]
+fn a_model_that_misses_its_data_is_emulated_with_a_discrepancy() {
+    const SCATTER: f64 = 0.5;
+    const MISS: f64 = 20.0;
+    const BOUND: f64 = 60.0;
+    let mut problem = jumping_problem(|theta| Some(jumping_line(theta, SCATTER)), MISS, BOUND);
+    let common = (0..20).map(|datum| CommonError {
+        data: vec![datum],
+        size: CommonErrorSize::Discrepancy { group: 0 },
+    });
+    let data = problem.likelihood.data().to_vec();
+    let unknown = vec![Discrepancy::Unknown];
+    problem.likelihood =
+        Likelihood::with_common(data, ErrorLaw::Gaussian, common.collect(), unknown).unwrap();
+    let sampler = run(&problem, 1, false);
+    let record = sampler.record();
+    assert!(!record.fell_back);
+    let posterior = sampler.posterior().unwrap();
+    assert!(posterior.evaluations <= 400, "{}", posterior.evaluations);
+
+    let noise_variance = 1.0 + record.numerical_noise.first().map_or(0.0, |sd| sd * sd);
+    let levels = discrepancy_levels();
+    let mean: f64 = levels
+        .iter()
+        .map(|m| libm::exp(line_log_evidence(MISS, BOUND, noise_variance * (1.0 + m * m))))
+        .sum::<f64>()
+        / levels.len() as f64;
+    let error = posterior.log_evidence - libm::log(mean);
     assert!(error.abs() < 0.2, "{error} ± {}", posterior.log_evidence_se);
 }
 

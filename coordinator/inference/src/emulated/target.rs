@@ -61,20 +61,29 @@ pub(crate) struct EmulatedTarget<'a> {
 impl EmulatedTarget<'_> {
     /// Returns the emulated likelihood.
     ///
-    /// With r the residuals and s the sd of a predicted output, both in error sds, and m outputs, the sum of squares has an error of
-    /// about `2 s |r| + m s^2`.
+    /// With r the residuals and s the sd of a predicted output, both in noise sds, and k the share of the noise in the variance of a
+    /// datum, below 1 where a discrepancy or another common error adds to it, the log-likelihood has an error of about
+    /// `s |k r| + s^2 / 2 sum k`. Checked by `emulated::a_model_that_misses_its_data_is_emulated_with_a_discrepancy`.
     pub(crate) fn score(&self, theta: &[f64]) -> EmulatedScore {
         let predicted = self.emulator.predict(self.prior, theta);
         let outputs = &predicted.outputs;
-        let squares = self.likelihood.data().iter().zip(outputs).map(|(datum, y)| {
-            let residual = (datum.value - y) / datum.sd.at(theta);
-            residual * residual
-        });
-        let (length, count) = (squares.sum::<f64>().sqrt(), outputs.len() as f64);
         let scored = self.likelihood.log_likelihood(outputs, theta);
+        // Parameters without a variance have no likelihood either.
+        let variances = self
+            .likelihood
+            .error_variances(outputs, theta)
+            .unwrap_or_default();
+        let (mut squares, mut shares) = (0.0, 0.0);
+        for ((datum, y), variance) in self.likelihood.data().iter().zip(outputs).zip(variances) {
+            let noise_sd = datum.sd.at(theta);
+            let share = noise_sd * noise_sd / variance;
+            let residual = share * (datum.value - y) / noise_sd;
+            squares += residual * residual;
+            shares += share;
+        }
         EmulatedScore {
             log_likelihood: scored.map_or(f64::NEG_INFINITY, LogLikelihood::value),
-            sd: predicted.sd * (length + 0.5 * predicted.sd * count),
+            sd: predicted.sd * (squares.sqrt() + 0.5 * predicted.sd * shares),
             log_acceptance: libm::log(predicted.acceptance),
         }
     }

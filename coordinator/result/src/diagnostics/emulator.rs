@@ -117,17 +117,17 @@ impl EmulatorDiagnostics {
     /// Returns sentences on the emulator, the final draws and the scatter of the model.
     pub fn words(&self) -> Vec<String> {
         let mut words = Vec::new();
-        let batches = number::count(self.rounds.len(), "batch");
+        let rounds = number::count(self.rounds.len(), "round");
         let evaluations = number::count(self.evaluations(), "evaluation");
         match (self.effective_draws, self.error_sigma()) {
             (Some(ess), Some(error)) => words.push(format!(
-                "an emulator of the model's outputs was refined by {batches} of {evaluations} in all, to an error of {} error sds; {} of \
+                "an emulator of the model's outputs was refined in {rounds} with {evaluations} in all, to an error of {} error sds; {} of \
                  the model weigh as {ess:.0} independent ones",
                 number::significant(error, 2),
                 number::count(self.final_draws, "final draw")
             )),
             _ => words.push(format!(
-                "the emulator of the model's outputs was given up after {batches} of {evaluations}, because it did not learn them; the \
+                "the emulator of the model's outputs was given up after {rounds} with {evaluations}, because it did not learn them; the \
                  model itself was sampled"
             )),
         }
