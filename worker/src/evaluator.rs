@@ -149,7 +149,9 @@ fn evaluate(lease: Lease, variant: &CompiledVariant, clock: &SimulationClock) ->
         true => std::panic::catch_unwind(repeat).unwrap_or_default(),
         false => None,
     };
-    let elapsed = u64::try_from(began.elapsed().as_nanos()).unwrap_or(u64::MAX);
+    // While a thread waits for conditions that it shares, it may begin another evaluation: the conditions' own time counts.
+    let elapsed = variant.take_shared_time().unwrap_or_else(|| began.elapsed());
+    let elapsed = u64::try_from(elapsed.as_nanos()).unwrap_or(u64::MAX);
     clock.simulated_ns.fetch_add(elapsed, Ordering::Relaxed);
     clock.evaluations.fetch_add(1, Ordering::Relaxed);
     let Lease {

@@ -6,8 +6,13 @@ use shared::experiment::Experiment;
 use shared::file::FileSet;
 use shared::model::{EffectSet, ModelSettings, ModelVariant};
 
-/// Returns one run of a smooth wheel on a soil whose parameters are fixed.
+/// Returns one run of a smooth wheel on a soil whose parameters are fixed, by `quasi_static`.
 pub(crate) fn variant() -> ModelVariant {
+    variant_of("quasi_static", 1)
+}
+
+/// Returns the first runs of a smooth wheel on a soil whose parameters are fixed, by a kind of model.
+pub(crate) fn variant_of(kind: &str, runs: usize) -> ModelVariant {
     let files = FileSet {
         toml: include_str!("../../tests/data/nothing-hidden/experiment.toml").into(),
         files: BTreeMap::from([(
@@ -16,7 +21,7 @@ pub(crate) fn variant() -> ModelVariant {
         )]),
     };
     let experiment = Experiment::parse("experiment.toml", &files).unwrap();
-    let mut settings = ModelSettings::from_table(&"kind = \"quasi_static\"".parse().unwrap()).unwrap();
+    let mut settings = ModelSettings::from_table(&format!("kind = \"{kind}\"").parse().unwrap()).unwrap();
     let parameters = include_str!("../../tests/data/nothing-hidden/parameters.toml");
     let parameters: BTreeMap<String, f64> = toml::from_str(parameters).unwrap();
     settings.fixed.extend(parameters);
@@ -26,7 +31,7 @@ pub(crate) fn variant() -> ModelVariant {
         &settings,
         &effects,
         Vec::new(),
-        &experiment.runs[..1],
+        &experiment.runs[..runs],
     )
     .unwrap()
 }

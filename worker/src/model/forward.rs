@@ -1,5 +1,9 @@
 //! The forward model of a variant: simulates every condition with its transient, and predicts plates and rings, at one parameter vector.
 
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use scm::spatial::SpatialRun;
 use scm::{Averages, Condition, Wheel};
 use shared::channel::Channel;
@@ -32,7 +36,12 @@ pub(super) struct ForwardModel {
     transients: Transients,
     /// The bevameter with its plates and rings, if there are readings to predict.
     bevameter: Option<(CompiledBevameter, Vec<PlateCondition>, Vec<RingCondition>)>,
+    /// Time that all threads spent on conditions that they shared, not taken yet `[ns]`.
+    shared_ns: AtomicU64,
 }
+
+/// The simulation of one condition.
+type SimulatedRun = Result<Simulated, scm::Rejection>;
 
 /// Relative increase of the stiffness for its derivatives: it must exceed the noise of a grid model, about 0.3 % of a force,
 /// and the laws are smooth powers of the stiffness.
@@ -90,6 +99,7 @@ impl ForwardModel {
                     variant.rings.clone(),
                 )),
             },
+            shared_ns: AtomicU64::new(0),
         })
     }
 
@@ -108,8 +118,11 @@ impl ForwardModel {
         let mut effects = self.effects.at(theta);
         let mut observables = Observables::with_capacity(self.runs());
         observables.transient_sinkage_m = vec![0.0; self.transients.count()];
+        let mut shared = self.simulate_on_all_threads(theta, &physics).into_iter();
         for position in 0..self.runs() {
-            let simulated = match self.simulate(theta, &physics, &mut effects, position) {
+            let shared = shared.next().flatten();
+            let simulated = shared.unwrap_or_else(|| self.simulate(theta, &physics, &mut effects, position));
+            let simulated = match simulated {
                 Ok(simulated) => simulated,
                 Err(rejection) => return rejected(rejection.kind(), position, rejection.to_string()),
             };
@@ -153,6 +166,39 @@ impl ForwardModel {
         Outcome::Evaluated(observables)
     }
 
+    /// Simulates the conditions of a model whose runs take milliseconds on all threads of the pool that calls, because a fit asks for one
+    /// evaluation at a time. A condition after a rejected one may be left out. Empty for fast models, and outside a pool.
+    fn simulate_on_all_threads(&self, theta: &[f64], physics: &PhysicsAt) -> Vec<Option<SimulatedRun>> {
+        if !physics.is_expensive() || rayon::current_thread_index().is_none() {
+            return Vec::new();
+        }
+        let rejected = AtomicUsize::new(usize::MAX);
+        let simulate = |effects: &mut ActiveEffects, position: usize| {
+            if position > rejected.load(Ordering::Relaxed) {
+                return None;
+            }
+            let began = Instant::now();
+            let simulated = self.simulate(theta, physics, effects, position);
+            if simulated.is_err() {
+                rejected.fetch_min(position, Ordering::Relaxed);
+            }
+            let elapsed = u64::try_from(began.elapsed().as_nanos()).unwrap_or(u64::MAX);
+            self.shared_ns.fetch_add(elapsed, Ordering::Relaxed);
+            Some(simulated)
+        };
+        (0..self.runs())
+            .into_par_iter()
+            .with_max_len(1)
+            .map_init(|| self.effects.at(theta), simulate)
+            .collect()
+    }
+
+    /// Returns the time that all threads spent on shared conditions since the last call; `None` if no condition was shared.
+    pub(super) fn take_shared_time(&self) -> Option<Duration> {
+        let shared = self.shared_ns.swap(0, Ordering::Relaxed);
+        (shared > 0).then(|| Duration::from_nanos(shared))
+    }
+
     /// Simulates every condition on stiffer soil: derivatives of the channels by ln k*.
     fn differentiate_by_stiffness(
         &self,
@@ -163,8 +209,11 @@ impl ForwardModel {
     ) -> Result<(), ParameterRejection> {
         let stiffer = physics.stiffer(1.0 + STIFFER);
         let step = libm::log1p(STIFFER);
+        let mut shared = self.simulate_on_all_threads(theta, &stiffer).into_iter();
         for position in 0..self.runs() {
-            let averages = match self.simulate(theta, &stiffer, effects, position) {
+            let shared = shared.next().flatten();
+            let simulated = shared.unwrap_or_else(|| self.simulate(theta, &stiffer, effects, position));
+            let averages = match simulated {
                 Ok(Simulated::Steady(averages)) => averages,
                 Ok(Simulated::Rolled(run)) => run.averages,
                 Err(rejection) => {
@@ -257,7 +306,7 @@ impl ForwardModel {
         physics: &PhysicsAt,
         effects: &mut ActiveEffects,
         position: usize,
-    ) -> Result<Simulated, scm::Rejection> {
+    ) -> SimulatedRun {
         let wheel = self.wheel(theta, position);
         let run = self.run(theta, &wheel, position);
         physics.simulate(&run, effects.on_wheel(run.wheel_index))
@@ -332,4 +381,45 @@ fn parameter_rejection(kind: &str, condition: usize, message: String) -> Paramet
 
 fn rejected(kind: &str, condition: usize, message: String) -> Outcome {
     Outcome::Rejected(parameter_rejection(kind, condition, message))
+}
+
+#[cfg(test)]
+mod tests {
+    use shared::outcome::Outcome;
+
+    use super::ForwardModel;
+    use crate::fixture::variant_of;
+
+    /// Evaluates six runs of `scm` outside a pool and in a pool of three threads, which share the runs.
+    fn outside_and_in_a_pool(loads_n: [f64; 6]) -> [Outcome; 2] {
+        let mut variant = variant_of("scm", loads_n.len());
+        for (condition, load_n) in variant.conditions.iter_mut().zip(loads_n) {
+            condition.wheel_load_n = load_n;
+        }
+        let model = ForwardModel::new(&variant).unwrap();
+        let outside = model.evaluate(&[], |_| {});
+        assert_eq!(model.take_shared_time(), None);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
+        let inside = pool.install(|| model.evaluate(&[], |_| {}));
+        assert!(model.take_shared_time().is_some());
+        assert_eq!(model.take_shared_time(), None);
+        [outside, inside]
+    }
+
+    #[test]
+    fn runs_that_threads_share_have_the_same_bits() {
+        let [outside, inside] = outside_and_in_a_pool([100.0, 80.0, 120.0, 90.0, 110.0, 70.0]);
+        assert!(matches!(outside, Outcome::Evaluated(_)), "{outside:?}");
+        assert_eq!(outside, inside);
+    }
+
+    #[test]
+    fn the_first_of_two_rejected_runs_is_named_whichever_thread_ends_first() {
+        let [outside, inside] = outside_and_in_a_pool([100.0, 80.0, 1e6, 90.0, 1e7, 70.0]);
+        let Outcome::Rejected(rejection) = &outside else {
+            panic!("{outside:?}");
+        };
+        assert_eq!(rejection.condition, 2, "{rejection:?}");
+        assert_eq!(outside, inside);
+    }
 }

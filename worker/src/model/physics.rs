@@ -90,6 +90,11 @@ impl Physics {
 }
 
 impl PhysicsAt<'_> {
+    /// Returns whether a run takes milliseconds.
+    pub(super) fn is_expensive(&self) -> bool {
+        matches!(self, PhysicsAt::Scm(..))
+    }
+
     /// Simulates one condition; a [`Rejection`] if the model has no answer for these parameters.
     pub(super) fn simulate(&self, run: &Run, effects: &mut Active) -> Result<Simulated, Rejection> {
         let (wheel, condition, site) = (run.wheel, run.condition, run.site);

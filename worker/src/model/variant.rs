@@ -1,6 +1,7 @@
 //! A compiled variant: its built-in or external model.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use scm::Averages;
 use scm::spatial::SpatialRun;
@@ -52,6 +53,15 @@ impl CompiledVariant {
         match &self.0 {
             Model::Ours(forward) => forward.evaluate(theta, keep),
             Model::Outside(model) => model.evaluate(theta),
+        }
+    }
+
+    /// Returns the time that all threads of a pool spent on conditions that they shared since the last call; `None` if they shared none, so
+    /// that evaluations took the time of their thread.
+    pub fn take_shared_time(&self) -> Option<Duration> {
+        match &self.0 {
+            Model::Ours(forward) => forward.take_shared_time(),
+            Model::Outside(_) => None,
         }
     }
 

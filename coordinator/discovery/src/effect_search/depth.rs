@@ -153,7 +153,7 @@ pub(crate) const FULL: Depth = Depth {
 };
 
 /// The best candidates of a rough model are fitted: its evaluations are expensive, and its evidences no sharper than its noise.
-pub(crate) const SPARING: Depth = Depth {
+const SPARING: Depth = Depth {
     base: BaseDepth {
         plan: &[FitStep::Rounds { max: 2, trials: 6 }],
         max_continued: 1,
@@ -194,7 +194,7 @@ pub(crate) const SPARING: Depth = Depth {
 };
 
 /// A further effect beyond one of the best combinations. Nothing is confirmed, so the refinement must converge.
-pub(crate) const QUICK: Depth = Depth {
+const QUICK: Depth = Depth {
     screen: ScreenDepth {
         max_on_model: 48,
         ..FULL.screen
@@ -212,7 +212,7 @@ pub(crate) const QUICK: Depth = Depth {
 };
 
 /// A further effect of a rough model beyond one of the best combinations.
-pub(crate) const SPARING_QUICK: Depth = Depth {
+const SPARING_QUICK: Depth = Depth {
     screen: ScreenDepth {
         max_on_model: 4,
         ..SPARING.screen
@@ -249,11 +249,8 @@ pub(crate) const GLANCE: Depth = Depth {
     ..QUICK
 };
 
-/// The best curves outside the library, where the misfit is small and the linear screen reliable.
-pub(crate) const CURVES: Depth = QUICK;
-
-/// All curves, where the misfit is too large for the linear screen.
-pub(crate) const ALL_CURVES: Depth = Depth {
+/// All curves outside the library, where the misfit is too large for the linear screen.
+const ALL_CURVES: Depth = Depth {
     extension: ExtensionDepth {
         max_count: usize::MAX,
         ..QUICK.extension
@@ -261,8 +258,38 @@ pub(crate) const ALL_CURVES: Depth = Depth {
     ..QUICK
 };
 
+impl Depth {
+    /// Returns the depth of the search for a further effect beyond a combination or a law.
+    pub(crate) fn beyond(smoothness: Smoothness) -> &'static Self {
+        match smoothness {
+            Smoothness::Smooth => &QUICK,
+            Smoothness::Rough | Smoothness::Unknown => &SPARING_QUICK,
+        }
+    }
+
+    /// Returns the depth of the search for a curve.
+    ///
+    /// # Arguments
+    /// - `is_wrong`: whether the best fit so far contradicts the data, so that the linear screen is not reliable.
+    pub(crate) fn of_curves(smoothness: Smoothness, is_wrong: bool) -> &'static Self {
+        match smoothness {
+            Smoothness::Rough | Smoothness::Unknown => &SPARING_QUICK,
+            Smoothness::Smooth if is_wrong => &ALL_CURVES,
+            Smoothness::Smooth => &QUICK,
+        }
+    }
+
+    /// Returns the depth of the search for the form of a law.
+    pub(crate) fn of_forms(smoothness: Smoothness) -> &'static Self {
+        match smoothness {
+            Smoothness::Smooth => &FORMS,
+            Smoothness::Rough | Smoothness::Unknown => &SPARING_FORMS,
+        }
+    }
+}
+
 /// Simple forms, with thresholds and centres at about every tenth of their priors, and three widths at each centre.
-pub(crate) const FORMS: Depth = Depth {
+const FORMS: Depth = Depth {
     screen: ScreenDepth {
         shapes: &[0.0, -0.25, 0.25, -0.55, 0.55, -0.85, 0.85, -1.3, 1.3],
         second_shapes: &[0.0, -1.0, 1.0],
@@ -281,6 +308,20 @@ pub(crate) const FORMS: Depth = Depth {
     },
     confirmation: None,
     ..FULL
+};
+
+/// Simple forms of the laws of a rough model.
+const SPARING_FORMS: Depth = Depth {
+    screen: ScreenDepth {
+        max_on_model: 8,
+        ..FORMS.screen
+    },
+    extension: ExtensionDepth {
+        max_count: 6,
+        ..FORMS.extension
+    },
+    refinement: SPARING_QUICK.refinement,
+    ..FORMS
 };
 
 /// Formulas of a located law, with positive strengths. Half a standard deviation is the strength that the curve has, and the constants have

@@ -1,7 +1,7 @@
 //! Step 8, the beam search: beyond each of the best combinations, one more effect is searched while misfit remains.
 
 use crate::chi_square::FURTHER_EFFECT;
-use crate::effect_search::depth::{GLANCE, QUICK, SPARING_QUICK};
+use crate::effect_search::depth::{Depth, GLANCE};
 use crate::probability::DETECTED;
 use crate::settings::Smoothness;
 use crate::stages::branch::SearchBranch;
@@ -43,9 +43,8 @@ impl SearchState {
         let branches = best.into_iter().enumerate().filter_map(|(rank, combination)| {
             let effects = &combination.effects;
             let depth = match self.task.settings.smoothness {
-                Smoothness::Smooth if rank < BEAM => &QUICK,
-                Smoothness::Smooth => &GLANCE,
-                Smoothness::Rough | Smoothness::Unknown => &SPARING_QUICK,
+                Smoothness::Smooth if rank >= BEAM => &GLANCE,
+                smoothness => Depth::beyond(smoothness),
             };
             self.branch(effects.clone(), self.further_effects(effects), depth)
         });

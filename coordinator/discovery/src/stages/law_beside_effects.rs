@@ -2,7 +2,7 @@
 //! cross-validation of the best set that has both.
 
 use crate::chi_square::{FURTHER_EFFECT, FitChiSquare};
-use crate::effect_search::depth::{FORMS, QUICK};
+use crate::effect_search::depth::Depth;
 use crate::probability::DETECTED;
 use crate::settings::Smoothness;
 use crate::stages::branch::SearchBranch;
@@ -40,8 +40,9 @@ impl SearchState {
         if !self.seeks_laws_beside_effects() || size > self.task.max_effects {
             return self.law_elimination();
         }
+        let depth = Depth::beyond(self.task.settings.smoothness);
         let branch = |(effects, choice): &(Vec<usize>, f64)| {
-            let branch = self.branch(effects.clone(), self.further_effects(effects), &QUICK)?;
+            let branch = self.branch(effects.clone(), self.further_effects(effects), depth)?;
             Some(branch.with_choice(*choice))
         };
         let branches: Vec<SearchBranch> = self.sets_with_law(size).iter().filter_map(branch).collect();
@@ -95,7 +96,8 @@ impl SearchState {
             let beyond = self.hypotheses.of_set(&effects).filter(|_| !is_fitted)?;
             let mut candidates = vec![self.task.curve(law)];
             candidates.extend(self.task.forms(law));
-            Some((law, self.branch(beyond.effects.clone(), candidates, &FORMS)?))
+            let depth = Depth::of_forms(self.task.settings.smoothness);
+            Some((law, self.branch(beyond.effects.clone(), candidates, depth)?))
         });
         match unfitted {
             Some((law, branch)) => Stage::LawForms(law, branch),

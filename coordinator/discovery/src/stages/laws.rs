@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use crate::chi_square::{FURTHER_EFFECT, FitChiSquare, OUTSIDE_LAW};
-use crate::effect_search::depth::{ALL_CURVES, CURVES, FORMS};
+use crate::effect_search::depth::Depth;
 use crate::laplace::evidence::log_sum_exp;
 use crate::laplace::fit::LaplaceFit;
 use crate::probability::DETECTED;
@@ -89,11 +89,8 @@ impl SearchState {
     /// # Arguments
     /// - `beyond`: the effects of the model; none: the base. `chi_square`: goodness of fit of the best explanation so far.
     fn scan(&mut self, beyond: Vec<usize>, chi_square: Option<FitChiSquare>) -> Stage {
-        let depth = if chi_square.is_some_and(|chi| chi.is_wrong()) {
-            &ALL_CURVES
-        } else {
-            &CURVES
-        };
+        let is_wrong = chi_square.is_some_and(|chi| chi.is_wrong());
+        let depth = Depth::of_curves(self.task.settings.smoothness, is_wrong);
         let curves: Vec<usize> = (0..self.task.laws.len())
             .map(|law| self.task.curve(law))
             .collect();
@@ -108,7 +105,11 @@ impl SearchState {
         let scan = self.scan_of(branch);
         let best = scan.laws.iter().take(LAWS);
         let forms = best.flat_map(|law| self.task.forms(law.law)).collect();
-        let forms = self.branch(scan.beyond.clone(), forms, &FORMS);
+        let forms = self.branch(
+            scan.beyond.clone(),
+            forms,
+            Depth::of_forms(self.task.settings.smoothness),
+        );
         if scan.beyond.is_empty() {
             self.hypotheses.laws = Some(scan);
         } else {

@@ -121,15 +121,19 @@ impl EmulatedSampler {
     /// Returns the stage in progress, for display; the last stage once finished.
     #[must_use]
     pub fn progress(&self) -> StageProgress {
-        let exponent = match &self.phase {
+        // The stages become the result's when the sampler has ended.
+        let finished = self.emulated_stages.len().max(self.stages.len());
+        let (stage, exponent) = match &self.phase {
             RunPhase::Waiting(EmulatedRound::Fallback(sampler)) => return sampler.progress(),
-            RunPhase::Waiting(EmulatedRound::Design) => 0.0,
-            RunPhase::Waiting(EmulatedRound::Refinement(refinement)) => refinement.position.exponent,
-            RunPhase::Waiting(EmulatedRound::Scatter(line)) => line.position.exponent,
-            _ => 1.0,
+            RunPhase::Waiting(EmulatedRound::Design) => (0, 0.0),
+            RunPhase::Waiting(EmulatedRound::Refinement(refinement)) => {
+                (finished + 1, refinement.position.exponent)
+            }
+            RunPhase::Waiting(EmulatedRound::Scatter(line)) => (finished + 1, line.position.exponent),
+            _ => (finished, 1.0),
         };
         StageProgress {
-            stage: self.emulated_stages.len() + usize::from(exponent > 0.0 && self.posterior().is_none()),
+            stage,
             tempering_exponent: exponent,
             step: self.record.rounds.len(),
             acceptance: None,

@@ -13,16 +13,16 @@ use crate::finished_calibration::FinishedCalibration;
 use crate::study::Study;
 
 impl Study {
-    /// Returns the measurements of the current model's experiment, with the average of the predictions of all models in the ledger that
-    /// have the same measurements, and of these measurements alone. A fit without draws is in no ledger, so its average is over itself and
-    /// the measurements.
+    /// Returns the measurements of the current model's experiment, with the average of the predictions of all models that have the same
+    /// measurements, those in the ledger and those that the job compares, and of these measurements alone. A fit without draws is in no
+    /// ledger, so its average is over itself and the measurements.
     pub fn combined(&self) -> &[CombinedRow] {
         self.combined.get_or_init(|| self.combine())
     }
 
     fn combine(&self) -> Vec<CombinedRow> {
         let current = self.current().unwrap_or(&self.lead);
-        let mut models: Vec<&FinishedCalibration> = self.ledger().collect();
+        let mut models: Vec<&FinishedCalibration> = self.ledger().chain(&self.other_models).collect();
         models.retain(|model| model.row.experiment == current.row.experiment);
         if models.is_empty() {
             models.push(current);
@@ -186,6 +186,25 @@ mod tests {
             averaged += 1;
         }
         assert!(averaged > 10, "{averaged}");
+    }
+
+    #[test]
+    fn a_compared_model_that_the_study_does_not_continue_with_is_averaged_too() {
+        let grown = grown();
+        let compared = Study {
+            other_models: grown.extensions.clone(),
+            ..Study::from(fixture::with_smooth_misfit())
+        };
+        let means = |study: &Study| -> Vec<Option<f64>> {
+            let rows = study.combined();
+            rows.iter().map(|combined| combined.mean).collect()
+        };
+        assert_eq!(means(&compared), means(&grown));
+        assert!(compared.combined().iter().all(|combined| combined.models <= 2));
+        assert_ne!(
+            means(&compared),
+            means(&Study::from(fixture::with_smooth_misfit()))
+        );
     }
 
     #[test]
