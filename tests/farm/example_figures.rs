@@ -223,7 +223,7 @@ fn cmu_sand_gives_the_figures_of_its_readme() {
 }
 
 #[test]
-#[ignore = "it takes a minute and a half on two cores"]
+#[ignore = "its two jobs take four minutes on two cores"]
 fn cmu_sand_gives_the_figures_of_its_slow_runs() {
     hold_those("cmu-sand/README.md", true);
 }
