@@ -10,7 +10,7 @@ use shared::exchange::{Lease, WorkResult};
 use shared::outcome::{Fault, Outcome};
 use tokio::sync::Notify;
 
-use crate::model::CompiledVariant;
+use crate::model::{CompiledVariant, SharedTime};
 
 /// One in this many of a calibration's first evaluations of an external model is repeated, because only a repetition shows whether the
 /// answers agree.
@@ -83,6 +83,7 @@ impl Evaluator {
 
     /// Queues evaluations; a panic of the model becomes a fault.
     pub fn start(&self, batch: Vec<(Lease, Arc<CompiledVariant>)>) {
+        let threads = self.pool.current_num_threads();
         let outstanding = self.bench.outstanding.fetch_add(batch.len(), Ordering::AcqRel) + batch.len();
         self.bench.wake_at.store(outstanding / 2, Ordering::Release);
         for (lease, variant) in batch {
@@ -92,7 +93,8 @@ impl Evaluator {
                 if !bench.cancelled.load(Ordering::Acquire) {
                     let number = lease.lease;
                     lock(&bench.started).insert(number);
-                    let result = evaluate(lease, &variant, &clock);
+                    let is_shared = bench.outstanding.load(Ordering::Acquire) < threads;
+                    let result = evaluate(lease, &variant, is_shared, &clock);
                     // The result is stored first, so that a lease is always in at least one list.
                     lock(&bench.results).push(result);
                     lock(&bench.started).remove(&number);
@@ -134,9 +136,17 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn evaluate(lease: Lease, variant: &CompiledVariant, clock: &SimulationClock) -> WorkResult {
+/// Evaluates a lease.
+///
+/// # Arguments
+/// - `is_shared`: whether there are threads without an evaluation, with which this one shares its conditions.
+fn evaluate(lease: Lease, variant: &CompiledVariant, is_shared: bool, clock: &SimulationClock) -> WorkResult {
     let began = Instant::now();
-    let evaluated = AssertUnwindSafe(|| variant.evaluate(&lease.theta));
+    let shared = SharedTime::default();
+    let evaluated = AssertUnwindSafe(|| match is_shared {
+        true => variant.evaluate_with_idle_threads(&lease.theta, &shared),
+        false => variant.evaluate(&lease.theta),
+    });
     let outcome = std::panic::catch_unwind(evaluated).unwrap_or_else(|_| {
         Outcome::Fault(Fault {
             message: "the model panicked".into(),
@@ -150,7 +160,7 @@ fn evaluate(lease: Lease, variant: &CompiledVariant, clock: &SimulationClock) ->
         false => None,
     };
     // While a thread waits for conditions that it shares, it may begin another evaluation: the conditions' own time counts.
-    let elapsed = variant.take_shared_time().unwrap_or_else(|| began.elapsed());
+    let elapsed = shared.total().unwrap_or_else(|| began.elapsed());
     let elapsed = u64::try_from(elapsed.as_nanos()).unwrap_or(u64::MAX);
     clock.simulated_ns.fetch_add(elapsed, Ordering::Relaxed);
     clock.evaluations.fetch_add(1, Ordering::Relaxed);

@@ -104,6 +104,22 @@ fn the_order_within_a_round_does_not_matter() {
     assert_eq!(forward.stages(), backward.stages());
 }
 
+#[test]
+fn the_final_draws_belong_to_the_last_stage() {
+    let problem = output_problems::shear_building();
+    let mut sampler = start(&problem, 1);
+    let mut last = 0;
+    while !sampler.round().pending().is_empty() {
+        let progress = sampler.progress();
+        assert!(progress.stage >= last, "{progress:?} after stage {last}");
+        last = progress.stage;
+        tell_round(&problem, &mut sampler, false);
+    }
+    assert!(last > 1, "{last}");
+    assert_eq!(last, sampler.stages().len());
+    assert_eq!(sampler.progress().stage, last);
+}
+
 /// The literal moduli of Bekker's law lie on a ridge beside the border of what the model accepts.
 #[test]
 fn literal_moduli_are_right_or_left_to_draws_of_the_model() {

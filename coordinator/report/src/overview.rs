@@ -50,7 +50,7 @@ pub struct StudyOverview {
     pub members: Vec<MemberOverview>,
     /// The error ledger: base first, then each extension.
     pub ledger: Vec<CalibrationSummary>,
-    /// Errors of the combined predictions of the models in the ledger; null if no prediction is corrected.
+    /// Errors of the combined predictions of the models; null if no prediction is corrected.
     pub combined: Option<CombinedSummary>,
     /// Noise standard deviation of `rmse_fixed_sigma`, by channel.
     pub fixed_sigma: BTreeMap<String, FixedSigma>,

@@ -77,7 +77,7 @@ impl CorrectedSummary {
     }
 }
 
-/// Errors of the weighted average of the corrected predictions of all models in the ledger and of the prediction by the measurements alone.
+/// Errors of the weighted average of the corrected predictions of all models and of the prediction by the measurements alone.
 #[derive(Debug, Clone, serde::Serialize, serde::Deserialize, utoipa::ToSchema)]
 pub struct CombinedSummary {
     /// Maximum number of models in an average, the measurements alone not counted.

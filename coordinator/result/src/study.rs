@@ -28,7 +28,7 @@ pub struct Study {
     pub rounds: Vec<DiscoveryRound>,
     /// Every member, finished or not, oldest first.
     pub members: Vec<StudyMember>,
-    /// The combined predictions of the models in the ledger and the measurements alone, computed on demand.
+    /// The combined predictions of the models and the measurements alone, computed on demand.
     pub combined: OnceLock<Vec<CombinedRow>>,
 }
 

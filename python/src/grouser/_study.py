@@ -105,7 +105,7 @@ class Study:
         """Every run and channel as the models predict it, the content of ``predictions.csv``.
 
         ``unit`` is the SI unit of ``measured``, ``model`` (the current one), ``corrected`` (that with what it misses in the fitted
-        conditions), ``combined`` (all models of the ledger and the measurements alone) and ``interpolated`` (without a model), and of the
+        conditions), ``combined`` (all models and the measurements alone) and ``interpolated`` (without a model), and of the
         5 % and 95 % quantiles of a new measurement.
         """
         return Table.from_rows(self._place.get(f"calibrations/{self._lead}/predictions"), units=CONDITIONS)

@@ -1,7 +1,6 @@
 //! The forward model of a variant: simulates every condition with its transient, and predicts plates and rings, at one parameter vector.
 
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
-use std::time::{Duration, Instant};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use scm::spatial::SpatialRun;
@@ -18,6 +17,7 @@ use super::error::CompileError;
 use super::parameters::Radius;
 use super::physics::{Physics, PhysicsAt, Run, Simulated};
 use super::recording;
+use super::shared_time::SharedTime;
 use super::transients::Transients;
 
 /// The forward model of a variant with its names resolved, so that an evaluation looks up nothing.
@@ -36,8 +36,6 @@ pub(super) struct ForwardModel {
     transients: Transients,
     /// The bevameter with its plates and rings, if there are readings to predict.
     bevameter: Option<(CompiledBevameter, Vec<PlateCondition>, Vec<RingCondition>)>,
-    /// Time that all threads spent on conditions that they shared, not taken yet `[ns]`.
-    shared_ns: AtomicU64,
 }
 
 /// The simulation of one condition.
@@ -99,7 +97,6 @@ impl ForwardModel {
                     variant.rings.clone(),
                 )),
             },
-            shared_ns: AtomicU64::new(0),
         })
     }
 
@@ -110,7 +107,15 @@ impl ForwardModel {
 
     /// Simulates every condition at one parameter vector; the first rejection ends it. `keep` receives each run of a
     /// time-dependent model, in the order of the conditions.
-    pub(super) fn evaluate(&self, theta: &[f64], mut keep: impl FnMut(SpatialRun)) -> Outcome {
+    ///
+    /// # Arguments
+    /// - `time`: where given, threads of the pool that calls share the conditions of an expensive model.
+    pub(super) fn evaluate(
+        &self,
+        theta: &[f64],
+        time: Option<&SharedTime>,
+        mut keep: impl FnMut(SpatialRun),
+    ) -> Outcome {
         let physics = match self.physics_at(theta) {
             Ok(physics) => physics,
             Err(rejection) => return Outcome::Rejected(rejection),
@@ -118,7 +123,7 @@ impl ForwardModel {
         let mut effects = self.effects.at(theta);
         let mut observables = Observables::with_capacity(self.runs());
         observables.transient_sinkage_m = vec![0.0; self.transients.count()];
-        let mut shared = self.simulate_on_all_threads(theta, &physics).into_iter();
+        let mut shared = self.share(theta, &physics, time).into_iter();
         for position in 0..self.runs() {
             let shared = shared.next().flatten();
             let simulated = shared.unwrap_or_else(|| self.simulate(theta, &physics, &mut effects, position));
@@ -153,7 +158,7 @@ impl ForwardModel {
         }
         if self.stiffness_sensitivity
             && let Err(rejection) =
-                self.differentiate_by_stiffness(theta, &physics, &mut effects, &mut observables)
+                self.differentiate_by_stiffness(theta, &physics, time, &mut effects, &mut observables)
         {
             return Outcome::Rejected(rejection);
         }
@@ -166,24 +171,26 @@ impl ForwardModel {
         Outcome::Evaluated(observables)
     }
 
-    /// Simulates the conditions of a model whose runs take milliseconds on all threads of the pool that calls, because a fit asks for one
-    /// evaluation at a time. A condition after a rejected one may be left out. Empty for fast models, and outside a pool.
-    fn simulate_on_all_threads(&self, theta: &[f64], physics: &PhysicsAt) -> Vec<Option<SimulatedRun>> {
-        if !physics.is_expensive() || rayon::current_thread_index().is_none() {
+    /// Simulates the conditions of a model whose runs take milliseconds on all threads of the pool that calls. A condition after a rejected
+    /// one may be left out. Empty for fast models, and where nothing is shared.
+    fn share(
+        &self,
+        theta: &[f64],
+        physics: &PhysicsAt,
+        time: Option<&SharedTime>,
+    ) -> Vec<Option<SimulatedRun>> {
+        let Some(time) = time.filter(|_| physics.is_expensive()) else {
             return Vec::new();
-        }
-        let rejected = AtomicUsize::new(usize::MAX);
+        };
+        let first_rejected = AtomicUsize::new(usize::MAX);
         let simulate = |effects: &mut ActiveEffects, position: usize| {
-            if position > rejected.load(Ordering::Relaxed) {
+            if position > first_rejected.load(Ordering::Relaxed) {
                 return None;
             }
-            let began = Instant::now();
-            let simulated = self.simulate(theta, physics, effects, position);
+            let simulated = time.measure(|| self.simulate(theta, physics, effects, position));
             if simulated.is_err() {
-                rejected.fetch_min(position, Ordering::Relaxed);
+                first_rejected.fetch_min(position, Ordering::Relaxed);
             }
-            let elapsed = u64::try_from(began.elapsed().as_nanos()).unwrap_or(u64::MAX);
-            self.shared_ns.fetch_add(elapsed, Ordering::Relaxed);
             Some(simulated)
         };
         (0..self.runs())
@@ -193,23 +200,18 @@ impl ForwardModel {
             .collect()
     }
 
-    /// Returns the time that all threads spent on shared conditions since the last call; `None` if no condition was shared.
-    pub(super) fn take_shared_time(&self) -> Option<Duration> {
-        let shared = self.shared_ns.swap(0, Ordering::Relaxed);
-        (shared > 0).then(|| Duration::from_nanos(shared))
-    }
-
     /// Simulates every condition on stiffer soil: derivatives of the channels by ln k*.
     fn differentiate_by_stiffness(
         &self,
         theta: &[f64],
         physics: &PhysicsAt,
+        time: Option<&SharedTime>,
         effects: &mut ActiveEffects,
         observables: &mut Observables,
     ) -> Result<(), ParameterRejection> {
         let stiffer = physics.stiffer(1.0 + STIFFER);
         let step = libm::log1p(STIFFER);
-        let mut shared = self.simulate_on_all_threads(theta, &stiffer).into_iter();
+        let mut shared = self.share(theta, &stiffer, time).into_iter();
         for position in 0..self.runs() {
             let shared = shared.next().flatten();
             let simulated = shared.unwrap_or_else(|| self.simulate(theta, &stiffer, effects, position));
@@ -389,37 +391,53 @@ mod tests {
 
     use super::ForwardModel;
     use crate::fixture::variant_of;
+    use crate::model::SharedTime;
 
-    /// Evaluates six runs of `scm` outside a pool and in a pool of three threads, which share the runs.
-    fn outside_and_in_a_pool(loads_n: [f64; 6]) -> [Outcome; 2] {
+    /// Returns the model of six runs of `scm` under these loads, with derivatives by the stiffness and histories.
+    fn of_loads(loads_n: [f64; 6]) -> ForwardModel {
         let mut variant = variant_of("scm", loads_n.len());
         for (condition, load_n) in variant.conditions.iter_mut().zip(loads_n) {
             condition.wheel_load_n = load_n;
         }
-        let model = ForwardModel::new(&variant).unwrap();
-        let outside = model.evaluate(&[], |_| {});
-        assert_eq!(model.take_shared_time(), None);
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
-        let inside = pool.install(|| model.evaluate(&[], |_| {}));
-        assert!(model.take_shared_time().is_some());
-        assert_eq!(model.take_shared_time(), None);
-        [outside, inside]
+        variant.stiffness_sensitivity = true;
+        variant.histories = true;
+        ForwardModel::new(&variant).unwrap()
+    }
+
+    fn pool() -> rayon::ThreadPool {
+        rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap()
     }
 
     #[test]
     fn runs_that_threads_share_have_the_same_bits() {
-        let [outside, inside] = outside_and_in_a_pool([100.0, 80.0, 120.0, 90.0, 110.0, 70.0]);
-        assert!(matches!(outside, Outcome::Evaluated(_)), "{outside:?}");
-        assert_eq!(outside, inside);
+        let model = of_loads([100.0, 80.0, 120.0, 90.0, 110.0, 70.0]);
+        let alone = model.evaluate(&[], None, |_| {});
+        let time = SharedTime::default();
+        let shared = pool().install(|| model.evaluate(&[], Some(&time), |_| {}));
+        assert!(matches!(alone, Outcome::Evaluated(_)), "{alone:?}");
+        assert_eq!(alone, shared);
+        assert!(time.total().is_some());
+        assert_eq!(SharedTime::default().total(), None);
     }
 
     #[test]
     fn the_first_of_two_rejected_runs_is_named_whichever_thread_ends_first() {
-        let [outside, inside] = outside_and_in_a_pool([100.0, 80.0, 1e6, 90.0, 1e7, 70.0]);
-        let Outcome::Rejected(rejection) = &outside else {
-            panic!("{outside:?}");
+        let model = of_loads([100.0, 80.0, 1e6, 90.0, 1e7, 70.0]);
+        let alone = model.evaluate(&[], None, |_| {});
+        let Outcome::Rejected(rejection) = &alone else {
+            panic!("{alone:?}");
         };
         assert_eq!(rejection.condition, 2, "{rejection:?}");
-        assert_eq!(outside, inside);
+        let time = SharedTime::default();
+        let shared = pool().install(|| model.evaluate(&[], Some(&time), |_| {}));
+        assert_eq!(alone, shared);
+        let physics = model.physics_at(&[]).unwrap();
+        let runs = pool().install(|| model.share(&[], &physics, Some(&time)));
+        let accepted: Vec<Option<bool>> = runs
+            .iter()
+            .map(|run| run.as_ref().map(Result::is_ok))
+            .take(3)
+            .collect();
+        assert_eq!(accepted, [Some(true), Some(true), Some(false)]);
     }
 }

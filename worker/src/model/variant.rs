@@ -1,7 +1,6 @@
 //! A compiled variant: its built-in or external model.
 
 use std::sync::Arc;
-use std::time::Duration;
 
 use scm::Averages;
 use scm::spatial::SpatialRun;
@@ -12,6 +11,7 @@ use shared::outcome::{Outcome, ParameterRejection};
 use super::error::CompileError;
 use super::external::OutsideModel;
 use super::forward::ForwardModel;
+use super::shared_time::SharedTime;
 use crate::external::allowed::AllowedModels;
 
 /// A variant ready to evaluate.
@@ -48,20 +48,20 @@ impl CompiledVariant {
         self.evaluate_and_keep(theta, |_| {})
     }
 
-    /// Evaluates like [`CompiledVariant::evaluate`]; `keep` receives each run of a time-dependent model, in the order of the conditions.
-    pub fn evaluate_and_keep(&self, theta: &[f64], keep: impl FnMut(SpatialRun)) -> Outcome {
+    /// Evaluates like [`CompiledVariant::evaluate`], with the same bits; the threads of the pool that calls share the conditions of a model
+    /// whose runs take milliseconds. `time` is that of all threads.
+    pub fn evaluate_with_idle_threads(&self, theta: &[f64], time: &SharedTime) -> Outcome {
         match &self.0 {
-            Model::Ours(forward) => forward.evaluate(theta, keep),
+            Model::Ours(forward) => forward.evaluate(theta, Some(time), |_| {}),
             Model::Outside(model) => model.evaluate(theta),
         }
     }
 
-    /// Returns the time that all threads of a pool spent on conditions that they shared since the last call; `None` if they shared none, so
-    /// that evaluations took the time of their thread.
-    pub fn take_shared_time(&self) -> Option<Duration> {
+    /// Evaluates like [`CompiledVariant::evaluate`]; `keep` receives each run of a time-dependent model, in the order of the conditions.
+    pub fn evaluate_and_keep(&self, theta: &[f64], keep: impl FnMut(SpatialRun)) -> Outcome {
         match &self.0 {
-            Model::Ours(forward) => forward.take_shared_time(),
-            Model::Outside(_) => None,
+            Model::Ours(forward) => forward.evaluate(theta, None, keep),
+            Model::Outside(model) => model.evaluate(theta),
         }
     }
 

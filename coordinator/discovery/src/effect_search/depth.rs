@@ -194,7 +194,7 @@ const SPARING: Depth = Depth {
 };
 
 /// A further effect beyond one of the best combinations. Nothing is confirmed, so the refinement must converge.
-const QUICK: Depth = Depth {
+pub(crate) const QUICK: Depth = Depth {
     screen: ScreenDepth {
         max_on_model: 48,
         ..FULL.screen
@@ -259,7 +259,7 @@ const ALL_CURVES: Depth = Depth {
 };
 
 impl Depth {
-    /// Returns the depth of the search for a further effect beyond a combination or a law.
+    /// Returns the depth of the search for a further effect beyond a combination.
     pub(crate) fn beyond(smoothness: Smoothness) -> &'static Self {
         match smoothness {
             Smoothness::Smooth => &QUICK,
@@ -270,7 +270,8 @@ impl Depth {
     /// Returns the depth of the search for a curve.
     ///
     /// # Arguments
-    /// - `is_wrong`: whether the best fit so far contradicts the data, so that the linear screen is not reliable.
+    /// - `is_wrong`: whether the best fit so far contradicts the data, so that the linear screen is not reliable; all curves of a
+    ///   rough model would cost too much even then.
     pub(crate) fn of_curves(smoothness: Smoothness, is_wrong: bool) -> &'static Self {
         match smoothness {
             Smoothness::Rough | Smoothness::Unknown => &SPARING_QUICK,

@@ -2,7 +2,7 @@
 //! cross-validation of the best set that has both.
 
 use crate::chi_square::{FURTHER_EFFECT, FitChiSquare};
-use crate::effect_search::depth::Depth;
+use crate::effect_search::depth::{Depth, QUICK};
 use crate::probability::DETECTED;
 use crate::settings::Smoothness;
 use crate::stages::branch::SearchBranch;
@@ -40,9 +40,8 @@ impl SearchState {
         if !self.seeks_laws_beside_effects() || size > self.task.max_effects {
             return self.law_elimination();
         }
-        let depth = Depth::beyond(self.task.settings.smoothness);
         let branch = |(effects, choice): &(Vec<usize>, f64)| {
-            let branch = self.branch(effects.clone(), self.further_effects(effects), depth)?;
+            let branch = self.branch(effects.clone(), self.further_effects(effects), &QUICK)?;
             Some(branch.with_choice(*choice))
         };
         let branches: Vec<SearchBranch> = self.sets_with_law(size).iter().filter_map(branch).collect();

@@ -121,7 +121,7 @@ impl EmulatedSampler {
     /// Returns the stage in progress, for display; the last stage once finished.
     #[must_use]
     pub fn progress(&self) -> StageProgress {
-        // The stages become the result's when the sampler has ended.
+        // At the end they are moved from the one list to the other.
         let finished = self.emulated_stages.len().max(self.stages.len());
         let (stage, exponent) = match &self.phase {
             RunPhase::Waiting(EmulatedRound::Fallback(sampler)) => return sampler.progress(),

@@ -62,21 +62,23 @@ impl EmulatedTarget<'_> {
     /// Returns the emulated likelihood.
     ///
     /// With r the residuals and s the sd of a predicted output, both in noise sds, and k the share of the noise in the variance of a
-    /// datum, below 1 where a discrepancy or another common error adds to it, the log-likelihood has an error of about
+    /// datum, 1 where the job has no discrepancy, the log-likelihood has an error of about
     /// `s |k r| + s^2 / 2 sum k`. Checked by `emulated::a_model_that_misses_its_data_is_emulated_with_a_discrepancy`.
     pub(crate) fn score(&self, theta: &[f64]) -> EmulatedScore {
         let predicted = self.emulator.predict(self.prior, theta);
         let outputs = &predicted.outputs;
         let scored = self.likelihood.log_likelihood(outputs, theta);
         // Parameters without a variance have no likelihood either.
-        let variances = self
-            .likelihood
-            .error_variances(outputs, theta)
-            .unwrap_or_default();
+        let variances = match self.likelihood.has_discrepancy() {
+            true => self.likelihood.error_variances(outputs, theta).ok(),
+            false => None,
+        };
         let (mut squares, mut shares) = (0.0, 0.0);
-        for ((datum, y), variance) in self.likelihood.data().iter().zip(outputs).zip(variances) {
+        for (i, (datum, y)) in self.likelihood.data().iter().zip(outputs).enumerate() {
             let noise_sd = datum.sd.at(theta);
-            let share = noise_sd * noise_sd / variance;
+            let share = variances
+                .as_ref()
+                .map_or(1.0, |variances| noise_sd * noise_sd / variances[i]);
             let residual = share * (datum.value - y) / noise_sd;
             squares += residual * residual;
             shares += share;

@@ -34,7 +34,7 @@ pub struct StudySummary {
     pub status: String,
     /// The error ledger: base first, then each extension. Empty for a search by generations, and for a fit without draws.
     pub calibrations: Vec<CalibrationSummary>,
-    /// Errors of the combined predictions of the models in the ledger; null if no prediction is corrected.
+    /// Errors of the combined predictions of the models; null if no prediction is corrected.
     pub combined: Option<CombinedSummary>,
     /// Noise standard deviation of `rmse_fixed_sigma`, by channel.
     pub fixed_sigma: BTreeMap<String, FixedSigma>,
@@ -91,7 +91,7 @@ pub(crate) fn point_estimate_summaries(study: &Study, sigmas: &FixedSigmas) -> V
         .collect()
 }
 
-/// Summarises what the models of the ledger predict together; `None` if nothing is corrected.
+/// Summarises what the models predict together; `None` if nothing is corrected.
 pub(crate) fn combined_summary(study: &Study, sigmas: &FixedSigmas) -> Option<CombinedSummary> {
     CombinedSummary::new(study.combined(), sigmas)
 }
