@@ -121,7 +121,7 @@ impl EmulatedSampler {
     /// Returns the stage in progress, for display; the last stage once finished.
     #[must_use]
     pub fn progress(&self) -> StageProgress {
-        // At the end they are moved from the one list to the other.
+        // The stages are moved from the one list to the other at the end.
         let finished = self.emulated_stages.len().max(self.stages.len());
         let (stage, exponent) = match &self.phase {
             RunPhase::Waiting(EmulatedRound::Fallback(sampler)) => return sampler.progress(),
