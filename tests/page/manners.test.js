@@ -228,6 +228,17 @@ test("a slow machine finds the place of a view that is gone back to", () =>
     assert.equal(await page.evaluate(() => history.state.top), 150);
   }));
 
+test("an address that changes while the page is being loaded is gone to", () =>
+  within({}, async (page) => {
+    await page.addInitScript(() =>
+      addEventListener("DOMContentLoaded", () => {
+        location.hash = "#/studies/1/compare";
+      }),
+    );
+    await page.goto(service.url);
+    await page.locator("section.view.compare figure .plot > svg").first().waitFor();
+  }));
+
 test("parts that were opened are open in a view that is gone back to, and closed in a new one", () =>
   within({}, async (page) => {
     await go(page, "#/studies/1/compare");

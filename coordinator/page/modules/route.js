@@ -1,6 +1,6 @@
 // The address of what is shown, behind the `#`: `#/studies/3/compare?model=5`. Whoever gets the address sees the same.
 
-import { useEffect, useState } from "./html.js";
+import { useEffect, useMemo, useState } from "./html.js";
 
 /** @typedef {{ place: string[], query: Record<string, string> }} Route */
 
@@ -45,11 +45,13 @@ export function replace(/** @type {string} */ to) {
 
 /** Where the browser is. */
 export function useRoute() {
-  const [route, setRoute] = useState(parse(location.hash));
+  const [hash, setHash] = useState(location.hash);
   useEffect(() => {
-    const look = () => setRoute(parse(location.hash));
+    const look = () => setHash(location.hash);
     addEventListener("hashchange", look);
+    // An effect runs after the first view is painted: an address that changed until then is not announced any more.
+    look();
     return () => removeEventListener("hashchange", look);
   }, []);
-  return route;
+  return useMemo(() => parse(hash), [hash]);
 }
