@@ -1,6 +1,7 @@
 //! Variants for tests.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use shared::experiment::Experiment;
 use shared::file::FileSet;
@@ -41,7 +42,7 @@ pub(crate) fn under_loads(loads: usize) -> Vec<(String, ModelVariant)> {
     let one = variant();
     let under = |k: usize| {
         let mut variant = one.clone();
-        variant.conditions[0].wheel_load_n += 0.01 * k as f64;
+        Arc::make_mut(&mut variant.conditions)[0].wheel_load_n += 0.01 * k as f64;
         (variant.hash(), variant)
     };
     (0..loads).map(under).collect()

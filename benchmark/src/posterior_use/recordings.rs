@@ -6,6 +6,7 @@
 //! stay.
 
 use std::fmt;
+use std::sync::Arc;
 use std::time::Instant;
 
 use coordinator::embedded::Evaluate;
@@ -384,7 +385,7 @@ fn simulated(blank: &Spec, theta: &[f64], slip: f64, load: f64) -> Result<Option
         ..blank.fit_variant.conditions[0].clone()
     };
     let variant = ModelVariant {
-        conditions: vec![condition],
+        conditions: Arc::new([condition]),
         ..blank.fit_variant.clone()
     };
     match Evaluate::new(&variant)?.evaluate(blank.model_theta(theta)) {

@@ -1,9 +1,11 @@
 //! A report: the page's modules, styles and the recorded answers of the service in one document.
 
-use std::fmt::Write;
+use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use serde_json::value::RawValue;
 use serde_json::{Map, Value, json};
 
 use crate::asset::{modules, text};
@@ -31,7 +33,7 @@ pub struct Report<'a> {
     /// Id of the calibration whose model is shown first.
     pub calibration: i64,
     /// Answers of the service by their paths.
-    pub answers: &'a Map<String, Value>,
+    pub answers: &'a BTreeMap<String, Box<RawValue>>,
 }
 
 /// Builds the document.
@@ -41,31 +43,46 @@ pub fn report(report: &Report) -> String {
         .iter()
         .map(|name| text(&format!("style/{name}.css")))
         .collect();
-    let parts = [
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">".to_owned(),
-        "<meta name=\"color-scheme\" content=\"light dark\">".to_owned(),
-        format!("<meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">"),
-        format!("<title>{}</title>", escaped(report.title)),
-        format!("<style>\n{styles}</style>"),
-        format!("<script type=\"importmap\">{}</script>", import_map()),
-        "</head>\n<body>".to_owned(),
-        format!(
-            "<main id=\"page\" class=\"report\"><pre>{}</pre></main>",
-            escaped(report.text)
-        ),
-        data("answers", &Value::Object(report.answers.clone())),
-        data(
-            SHOWN,
-            &json!({"study": report.study, "calibration": report.calibration}),
-        ),
-        format!("<script>{}</script>", text("vendor/d3.js")),
-        format!("<script>{}</script>", text("vendor/plot.js")),
-        format!("<script type=\"module\">import \"{PREFIX}modules/report.js\";</script>"),
-        "</body>\n</html>".to_owned(),
-    ];
-    for part in parts {
-        let _ = writeln!(page, "{part}");
+    let mut line = |part: &str| {
+        page.push_str(part);
+        page.push('\n');
+    };
+    line("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">");
+    line("<meta name=\"color-scheme\" content=\"light dark\">");
+    line(&format!(
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">"
+    ));
+    line(&format!("<title>{}</title>", escaped(report.title)));
+    line(&format!("<style>\n{styles}</style>"));
+    line(&format!("<script type=\"importmap\">{}</script>", import_map()));
+    line("</head>\n<body>");
+    line(&format!(
+        "<main id=\"page\" class=\"report\"><pre>{}</pre></main>",
+        escaped(report.text)
+    ));
+    // The answers are megabytes: each is written where it stays.
+    line(&format!("{}{{", opening("answers")));
+    for (place, (path, answer)) in report.answers.iter().enumerate() {
+        let comma = if place == 0 { "" } else { "," };
+        line(&format!(
+            "{comma}{}:{}",
+            Value::from(path.as_str()),
+            embedded(answer.get())
+        ));
     }
+    line("}</script>");
+    let shown = json!({"study": report.study, "calibration": report.calibration});
+    line(&format!(
+        "{}{}</script>",
+        opening(SHOWN),
+        embedded(&shown.to_string())
+    ));
+    line(&format!("<script>{}</script>", text("vendor/d3.js")));
+    line(&format!("<script>{}</script>", text("vendor/plot.js")));
+    line(&format!(
+        "<script type=\"module\">import \"{PREFIX}modules/report.js\";</script>"
+    ));
+    line("</body>\n</html>");
     page
 }
 
@@ -87,11 +104,13 @@ fn opening(id: &str) -> String {
     format!("<script type=\"application/json\" id=\"{id}\">")
 }
 
-/// Embeds JSON in a script element, escaped so that it cannot close the element.
-fn data(id: &str, value: &Value) -> String {
+/// Returns JSON for a script element, escaped so that it cannot close the element.
+fn embedded(json: &str) -> Cow<'_, str> {
     // `<` occurs in texts only, where its escape means the same.
-    let json = value.to_string().replace('<', "\\u003c");
-    format!("{}{json}</script>", opening(id))
+    match json.contains('<') {
+        true => Cow::Owned(json.replace('<', "\\u003c")),
+        false => Cow::Borrowed(json),
+    }
 }
 
 /// Returns the import map, which locates each module in the document.
@@ -151,7 +170,7 @@ fn escaped(text: &str) -> String {
 mod tests {
     use super::*;
 
-    fn example(answers: &Map<String, Value>) -> String {
+    fn example(answers: &BTreeMap<String, Box<RawValue>>) -> String {
         report(&Report {
             title: "<sand>",
             text: "a < b",
@@ -194,7 +213,8 @@ mod tests {
 
     #[test]
     fn no_text_leaves_its_element() {
-        let answers = Map::from_iter([("/v1/studies/1".to_owned(), json!({"name": "</script><i>"}))]);
+        let answer = RawValue::from_string(r#"{"name": "</script><i>"}"#.to_owned()).unwrap();
+        let answers = BTreeMap::from([("/v1/studies/1".to_owned(), answer)]);
         let page = example(&answers);
         assert!(!page.contains("</script><i>") && page.contains("&lt;sand&gt;") && page.contains("a &lt; b"));
         // The document has an import map, two sets of data, two libraries and the entry point.
@@ -204,7 +224,7 @@ mod tests {
 
     #[test]
     fn another_calibration_is_shown() {
-        let page = example(&Map::new());
+        let page = example(&BTreeMap::new());
         let moved = showing(&page, 5);
         assert!(page.contains("{\"calibration\":3,\"study\":1}</script>"));
         assert!(moved.contains("{\"calibration\":5,\"study\":1}</script>"));
@@ -214,7 +234,7 @@ mod tests {
 
     #[test]
     fn nothing_is_asked_elsewhere() {
-        let page = example(&Map::new());
+        let page = example(&BTreeMap::new());
         assert!(page.contains(POLICY));
         for word in ["src=\"http", "href=\"http", "@import url"] {
             assert!(!page.contains(word), "{word}");

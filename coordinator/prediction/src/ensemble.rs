@@ -306,7 +306,7 @@ pub(crate) fn variant(
     ModelVariant {
         wheels: wheels.clone(),
         gravity_m_s2: planned.gravity_m_s2,
-        conditions: vec![RunCondition {
+        conditions: Arc::new([RunCondition {
             wheel: run.wheel.clone(),
             slip: run.slip,
             wheel_load_n: run.wheel_load_n,
@@ -316,7 +316,7 @@ pub(crate) fn variant(
             repose_angle_deg: like.and_then(|condition| condition.repose_angle_deg),
             density_kg_m3: like.and_then(|condition| condition.density_kg_m3),
             order: like.and_then(|condition| condition.order).map(|_| 0.0),
-        }],
+        }]),
         transients: Vec::new(),
         plates: Vec::new(),
         rings: Vec::new(),

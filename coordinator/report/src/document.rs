@@ -3,7 +3,9 @@
 //! It contains the answers of the REST interface by path, so that the modules of the page work without a service. Without scripts it
 //! shows the text of the terminal.
 
-use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+
+use serde_json::value::{RawValue, to_raw_value};
 
 use page::report::{Report, report};
 use shared::api::CalibrationState;
@@ -39,10 +41,10 @@ pub fn document(study: &Study, predictions: &ReportPredictions) -> String {
 }
 
 /// Returns the answers of a service about a study, keyed by path.
-pub fn answers(study: &Study, predictions: &ReportPredictions) -> Map<String, Value> {
+pub fn answers(study: &Study, predictions: &ReportPredictions) -> BTreeMap<String, Box<RawValue>> {
     let overview = overview(study);
-    let mut answers = Map::new();
-    let mut add = |path: String, answer: Value| {
+    let mut answers = BTreeMap::new();
+    let mut add = |path: String, answer: Box<RawValue>| {
         answers.insert(format!("/v1/{path}"), answer);
     };
     add(format!("studies/{}", overview.id), json(&overview));
@@ -109,12 +111,15 @@ fn surfaces(study: &Study) -> Vec<(i64, Option<ResponseSurface>)> {
     found
 }
 
-fn json(answer: &impl serde::Serialize) -> Value {
-    serde_json::to_value(answer).expect("results have a JSON form")
+/// Returns an answer as its text, which takes a fraction of the memory of its values.
+fn json(answer: &impl serde::Serialize) -> Box<RawValue> {
+    to_raw_value(answer).expect("results have a JSON form")
 }
 
 #[cfg(test)]
 mod tests {
+    use serde_json::Value;
+
     use super::*;
     use crate::fixture;
 
@@ -138,7 +143,9 @@ mod tests {
             ..Study::from(fixture::calibration())
         };
         let answers = answers(&study, &ReportPredictions::default());
-        let models = &answers[&format!("/v1/studies/{}", study.lead.row.study)]["models"];
+        let overview = &answers[&format!("/v1/studies/{}", study.lead.row.study)];
+        let overview: Value = serde_json::from_str(overview.get()).unwrap();
+        let models = &overview["models"];
         assert_eq!(models["best"], study.lead.row.id);
         assert_eq!(models["models"].as_array().map(Vec::len), Some(2));
         assert_eq!(

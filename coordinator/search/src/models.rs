@@ -80,6 +80,8 @@ pub struct SearchModels {
     variants: BTreeMap<VariantKey, (String, ModelVariant)>,
     /// Key of each variant by its hash.
     keys: BTreeMap<String, VariantKey>,
+    /// The lists of conditions of these variants, each once.
+    conditions: Vec<Arc<[RunCondition]>>,
     max_effects: usize,
 }
 
@@ -128,6 +130,7 @@ impl SearchModels {
             equation: None,
             variants: BTreeMap::new(),
             keys: BTreeMap::new(),
+            conditions: Vec::new(),
             max_effects: max_effects.min(room.saturating_sub(1)),
             base,
         })
@@ -275,7 +278,10 @@ impl SearchModels {
         };
         let made: Vec<Result<(String, ModelVariant), FileError>> = unknown.par_iter().map(one).collect();
         // The first error in the order of the models is returned, whatever the order of the threads.
-        let made: Vec<(String, ModelVariant)> = made.into_iter().collect::<Result<_, _>>()?;
+        let mut made: Vec<(String, ModelVariant)> = made.into_iter().collect::<Result<_, _>>()?;
+        for (_, variant) in &mut made {
+            self.share_conditions(variant);
+        }
         let keys = made
             .iter()
             .map(|(hash, _)| hash.clone())
@@ -283,6 +289,15 @@ impl SearchModels {
         self.keys.extend(keys);
         self.variants.extend(unknown.into_iter().zip(made));
         Ok(())
+    }
+
+    /// Lets a variant share the conditions of an earlier one: a search makes hundreds of variants, and few lists of conditions.
+    fn share_conditions(&mut self, variant: &mut ModelVariant) {
+        let mut shared = self.conditions.iter();
+        match shared.find(|shared| **shared == variant.conditions) {
+            Some(shared) => variant.conditions = Arc::clone(shared),
+            None => self.conditions.push(Arc::clone(&variant.conditions)),
+        }
     }
 
     /// Returns the variant of a query, with its hash.
@@ -311,11 +326,12 @@ impl SearchModels {
         // end of the series.
         let density_kg_m3 = variant.conditions.first().and_then(|c| c.density_kg_m3);
         let drifts = variant.conditions.iter().any(|c| c.order.is_some());
-        variant.conditions.clone_from(&self.design);
-        for condition in &mut variant.conditions {
-            condition.density_kg_m3 = density_kg_m3;
-            condition.order = drifts.then_some(LAST_IN_SERIES);
-        }
+        let condition = |condition: &RunCondition| RunCondition {
+            density_kg_m3,
+            order: drifts.then_some(LAST_IN_SERIES),
+            ..condition.clone()
+        };
+        variant.conditions = self.design.iter().map(condition).collect();
         variant.stiffness_sensitivity = false;
         variant.transients.clear();
         variant.plates.clear();

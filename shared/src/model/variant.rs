@@ -1,6 +1,7 @@
 //! The self-contained variant of a forward model that a worker evaluates.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use formula::{Effect, Variable};
 use serde::{Deserialize, Serialize};
@@ -49,8 +50,9 @@ pub struct ModelVariant {
     /// Length of the soil bin `[m]`; absent if no effect uses it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bin_length_m: Option<f64>,
-    /// The conditions to simulate, in the order of the observables.
-    pub conditions: Vec<RunCondition>,
+    /// The conditions to simulate, in the order of the observables. Variants of one experiment may share them.
+    #[schema(value_type = Vec<RunCondition>)]
+    pub conditions: Arc<[RunCondition]>,
     /// The protocol that turns histories into averages.
     #[schema(value_type = Object)]
     pub protocol: AveragingProtocol,
@@ -152,7 +154,7 @@ impl ModelVariant {
                 ..RunCondition::new(run)
             })
         };
-        let conditions = runs.into_iter().map(condition).collect::<Result<Vec<_>, _>>()?;
+        let conditions = runs.into_iter().map(condition).collect::<Result<Arc<[_]>, _>>()?;
         let bin_length_m = experiment.rig.bin_length_m.filter(|_| walled.is_some());
         if let (Some(effect), None, false) = (walled, bin_length_m, conditions.is_empty()) {
             return Err(ModelError::Incomplete(format!(
@@ -204,7 +206,7 @@ impl ModelVariant {
                 ..transient.clone()
             };
             ModelVariant {
-                conditions: vec![condition.clone()],
+                conditions: Arc::new([condition.clone()]),
                 transients: of_run.map(alone).collect(),
                 ..self.clone()
             }

@@ -186,7 +186,7 @@ impl Unit {
         self.outputs = [f64::NAN; 4];
         let mut variant = self.model.variant.clone();
         let [slip, wheel_load_n, sled_speed_m_s, slip_angle_deg] = self.inputs;
-        for condition in &mut variant.conditions {
+        for condition in Arc::make_mut(&mut variant.conditions) {
             condition.slip = slip;
             condition.wheel_load_n = wheel_load_n;
             condition.sled_speed_m_s = sled_speed_m_s;
@@ -300,7 +300,7 @@ mod tests {
         let mut unit = Unit::new(model.clone(), "t").unwrap();
         unit.set_real(FIRST_INPUT, 0.3).unwrap();
         let mut variant = model.variant.clone();
-        variant.conditions[0].slip = 0.3;
+        Arc::make_mut(&mut variant.conditions)[0].slip = 0.3;
         let worker = CompiledVariant::new(&variant, &Arc::new(AllowedModels::default())).unwrap();
         let pulls = [1, 2].map(|draw| pull_at(&mut unit, draw));
         for (draw, pull) in model.draws.iter().zip(pulls) {

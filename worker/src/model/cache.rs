@@ -28,7 +28,7 @@ struct CachedVariant {
 
 impl VariantCache {
     /// The maximum number of variants: a round of a search needs hundreds, and the next round almost the same ones.
-    pub const MAX_VARIANTS: usize = 1024;
+    pub const MAX_VARIANTS: usize = 512;
     /// The maximum total length of the texts of the variants, unless there is a single variant.
     pub const MAX_BYTES: usize = 64 << 20;
 
@@ -110,7 +110,7 @@ mod tests {
         let mut long = variant();
         let condition_bytes = serde_json::to_vec(&long.conditions[0]).unwrap().len();
         let count = VariantCache::MAX_BYTES / condition_bytes;
-        long.conditions = vec![long.conditions[0].clone(); count];
+        long.conditions = vec![long.conditions[0].clone(); count].into();
         let mut variants = under_loads(3);
         variants.insert(2, (long.hash(), long));
         assert_eq!(cached(&variants[..3]), [false, false, true]);

@@ -387,6 +387,8 @@ fn rejected(kind: &str, condition: usize, message: String) -> Outcome {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use shared::outcome::Outcome;
 
     use super::ForwardModel;
@@ -396,7 +398,7 @@ mod tests {
     /// Returns the model of six runs of `scm` under these loads, with derivatives by the stiffness and histories.
     fn of_loads(loads_n: [f64; 6]) -> ForwardModel {
         let mut variant = variant_of("scm", loads_n.len());
-        for (condition, load_n) in variant.conditions.iter_mut().zip(loads_n) {
+        for (condition, load_n) in Arc::make_mut(&mut variant.conditions).iter_mut().zip(loads_n) {
             condition.wheel_load_n = load_n;
         }
         variant.stiffness_sensitivity = true;

@@ -107,7 +107,7 @@ impl Campaign {
         let truth = truth.and_then(|k| conclusion.ranking.effect(Some(k)));
         Ok(Answer {
             truth: truth.map(|effect| (effect.log_bayes_factor, effect.probability, effect.class)),
-            possible: local.models.variant(&proposed)?.1.conditions.clone(),
+            possible: local.models.variant(&proposed)?.1.conditions.to_vec(),
             conclusion,
         })
     }

@@ -10,6 +10,9 @@ pub(crate) struct Depth {
     pub(crate) screen: ScreenDepth,
     pub(crate) extension: ExtensionDepth,
     pub(crate) refinement: RefinementDepth,
+    /// A candidate whose screened or fitted log Bayes factor lies this far below the best, and below a quarter of it, is neither fitted nor
+    /// refined \[nats\]: the screen is linear and may find too little, but rarely a quarter of the right value. `None`: every candidate may be.
+    pub(crate) within: Option<f64>,
     /// `None`: the search ends with the refinement.
     pub(crate) confirmation: Option<ConfirmationDepth>,
 }
@@ -142,6 +145,7 @@ pub(crate) const FULL: Depth = Depth {
         max_count: 3,
         plan: &[FitStep::Differences, FitStep::Trials(6)],
     },
+    within: None,
     confirmation: Some(ConfirmationDepth {
         max_count: usize::MAX,
         within: 10.0,
@@ -207,6 +211,7 @@ pub(crate) const QUICK: Depth = Depth {
         max_count: 5,
         plan: &[FitStep::Rounds { max: 3, trials: 8 }],
     },
+    within: Some(8.0),
     confirmation: None,
     ..FULL
 };
@@ -255,6 +260,7 @@ const ALL_CURVES: Depth = Depth {
         max_count: usize::MAX,
         ..QUICK.extension
     },
+    within: None,
     ..QUICK
 };
 
@@ -307,6 +313,7 @@ const FORMS: Depth = Depth {
         holds_shapes: true,
         ..FULL.extension
     },
+    within: QUICK.within,
     confirmation: None,
     ..FULL
 };

@@ -15,6 +15,10 @@ use crate::laplace::reduced_discrepancy::reduced_discrepancy;
 use crate::settings::Smoothness;
 use statistics::likelihood::Likelihood;
 
+/// A fit from the mode of a reduced discrepancy that falls short of the screen's log Bayes factor by more is followed by one from the
+/// screen's point \[nats\].
+const MAX_SHORTFALL: f64 = 1.0;
+
 /// Begins a fit at the base's fit or at the screen's point, whichever is more probable; a switch begins at the screen's point.
 fn fit(
     frame: &NormalFrame,
@@ -89,7 +93,7 @@ impl EffectSearch {
     /// Fits the best candidates of the screen, each with the base. Those that only the low-fidelity model has screened are
     /// screened on the model first.
     pub(super) fn begin_extensions(&mut self) {
-        let best = self.best(self.depth.extension.max_count).into_iter();
+        let best = self.near_best(self.depth.extension.max_count).into_iter();
         let (awaiting, candidates): (Vec<usize>, Vec<usize>) = best
             .filter(|k| self.fit_of(*k).is_none())
             .partition(|k| self.awaits_model(*k));
@@ -111,7 +115,7 @@ impl EffectSearch {
         }
     }
 
-    /// Fits with a reduced discrepancy; the fits with the whole of it begin at the screen's points and, once more, at these modes.
+    /// Fits with a reduced discrepancy; the fits with the whole of it begin at these modes.
     pub(super) fn fit_reduced_discrepancy(&mut self, reduced: Likelihood, mut batch: FitBatch) {
         let requests = batch.ask(&reduced);
         if !requests.is_empty() {
@@ -120,15 +124,37 @@ impl EffectSearch {
             return;
         }
         self.evaluations.extension += batch.evaluations();
-        let best = self.best(self.depth.extension.max_count);
-        let mut fits = self.extension_fits(best, &self.likelihood);
-        fits.extend(batch.fits.into_iter().filter_map(|(candidate, fit)| {
+        let fits = batch.fits.into_iter().filter_map(|(candidate, fit)| {
             let FitPoint { position, values, .. } = fit.point;
             let point = FitPoint::new(&fit.frame, &self.likelihood, position, values)?;
             let plan = self.depth.extension.plan;
             Some((candidate, LaplaceFit::new(fit.frame, point, fit.columns, plan)))
-        }));
-        self.fit(FitPhase::Extensions, FitBatch::new(fits));
+        });
+        let batch = FitBatch::new(fits.collect());
+        self.fit(FitPhase::Extensions, batch);
+    }
+
+    /// Returns the best candidates whose fit began at the mode of a reduced discrepancy and falls short of the screen's promise: a fit
+    /// from the screen's point may be better.
+    fn short_of_screen(&self) -> Vec<usize> {
+        let base = self
+            .base
+            .as_ref()
+            .filter(|_| self.smoothness() == Smoothness::Smooth);
+        if base.is_none_or(|base| reduced_discrepancy(&self.likelihood, &base.fit).is_none()) {
+            return Vec::new();
+        }
+        let is_short = |k: &usize| {
+            let state = &self.candidates[*k];
+            let fitted = state.estimate.as_ref().filter(|estimate| estimate.fit.is_some());
+            let screened = state.screened.as_ref();
+            screened.zip(fitted).is_none_or(|(screened, fitted)| {
+                fitted.log_bayes_factor < screened.log_bayes_factor - MAX_SHORTFALL
+            })
+        };
+        let mut best = self.near_best(self.depth.extension.max_count);
+        best.retain(is_short);
+        best
     }
 
     /// Fits of candidates that begin at the screen's results.
@@ -151,22 +177,27 @@ impl EffectSearch {
     pub(super) fn take_extensions(&mut self, batch: FitBatch) {
         self.evaluations.extension += batch.evaluations();
         self.take(batch, EvidenceMethod::RankOne);
-        let near = self.within_reach();
+        let mut near = self.within_reach();
         let awaiting: Vec<usize> = near.iter().copied().filter(|k| self.awaits_model(*k)).collect();
         if !awaiting.is_empty() {
             return self.screen(0, awaiting);
         }
+        near.extend(self.short_of_screen());
         let fits = self.extension_fits(near, &self.likelihood);
         self.fit(FitPhase::WithinReach, FitBatch::new(fits));
     }
 
-    /// Keeps the fits of the candidates within reach, and refines the best of all.
-    pub(super) fn take_within_reach(&mut self, batch: FitBatch) {
+    /// Keeps the fits of the candidates within reach, and the better of two fits of a candidate, and refines the best of all.
+    pub(super) fn take_within_reach(&mut self, mut batch: FitBatch) {
         self.evaluations.extension += batch.evaluations();
+        let earlier = |k: &Option<usize>| k.and_then(|k| self.fit_of(k));
+        batch
+            .fits
+            .retain(|(k, fit)| earlier(k).is_none_or(|earlier| fit.point.value < earlier.point.value));
         self.take(batch, EvidenceMethod::RankOne);
         let depth = &self.depth.refinement;
         let fits = self
-            .best(depth.max_count)
+            .near_best(depth.max_count)
             .into_iter()
             .filter_map(|k| Some((Some(k), self.fit_of(k)?.continued(depth.plan))));
         let batch = FitBatch::new(fits.collect());

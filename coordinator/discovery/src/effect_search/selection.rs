@@ -28,6 +28,9 @@ pub(super) struct Projected {
     pub(super) classes: BTreeMap<usize, usize>,
 }
 
+/// The share of its log Bayes factor that the linear screen finds, nearly always.
+const QUARTER: f64 = 0.25;
+
 impl EffectSearch {
     /// Keeps the most probable fit of each candidate.
     pub(super) fn take(&mut self, batch: FitBatch, method: EvidenceMethod) {
@@ -104,6 +107,15 @@ impl EffectSearch {
     /// it is higher, because its fit may not have converged.
     pub(super) fn best(&self, count: usize) -> Vec<usize> {
         self.promises().into_iter().take(count).map(|(k, _)| k).collect()
+    }
+
+    /// Returns the candidates with the highest Bayes factors, without those that the depth of the search leaves out.
+    pub(super) fn near_best(&self, count: usize) -> Vec<usize> {
+        let mut promises = self.promises();
+        if let (Some(within), Some(&(_, best))) = (self.depth.within, promises.first()) {
+            promises.retain(|(_, promise)| *promise >= (best - within).min(QUARTER * best));
+        }
+        promises.into_iter().take(count).map(|(k, _)| k).collect()
     }
 
     /// Returns candidates that were only screened and whose log Bayes factor is not far below that of the best fit.
@@ -386,6 +398,7 @@ impl EffectSearch {
 mod tests {
     use super::*;
     use crate::candidate::Candidate;
+    use crate::effect_search::depth::QUICK;
     use crate::settings::SearchSettings;
     use statistics::likelihood::{Datum, ErrorSd, Likelihood};
     use statistics::prior::{Distribution, Marginal, Prior};
@@ -430,6 +443,40 @@ mod tests {
             }
         }
         search
+    }
+
+    #[test]
+    fn beyond_a_set_a_candidate_far_below_the_best_is_left_out() {
+        let mut search = searched();
+        let best = search.best(1)[0];
+        let mut count = |factors: [f64; 2], depth| {
+            search.depth = depth;
+            for (k, factor) in [(best, factors[0]), (1 - best, factors[1])] {
+                let state = &mut search.candidates[k];
+                state.screened.as_mut().unwrap().log_bayes_factor = factor;
+                state.estimate.as_mut().unwrap().log_bayes_factor = factor;
+            }
+            search.near_best(2).len()
+        };
+        // Far below, within 8 nats, and within a quarter.
+        let counts = [[40.0, 9.0], [9.0, 1.5], [40.0, 11.0]].map(|factors| count(factors, &QUICK));
+        assert_eq!(counts, [1, 2, 2]);
+        let mut every = searched();
+        every.candidates[1 - best]
+            .estimate
+            .as_mut()
+            .unwrap()
+            .log_bayes_factor = -40.0;
+        every.candidates[1 - best]
+            .screened
+            .as_mut()
+            .unwrap()
+            .log_bayes_factor = -40.0;
+        assert_eq!(
+            every.near_best(2).len(),
+            2,
+            "the search over the library fits all"
+        );
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! cross-validation of the best set that has both.
 
 use crate::chi_square::{FURTHER_EFFECT, FitChiSquare};
-use crate::effect_search::depth::{Depth, QUICK};
+use crate::effect_search::depth::{Depth, GLANCE, QUICK};
 use crate::probability::DETECTED;
 use crate::settings::Smoothness;
 use crate::stages::branch::SearchBranch;
@@ -35,16 +35,18 @@ impl SearchState {
         sets.map(|c| (c.effects.clone(), c.choice)).collect()
     }
 
-    /// Searches one more effect beyond the best sets of a size that have a law.
+    /// Searches one more effect beyond the best sets of a size that have a law, beyond the best of all more deeply.
     pub(super) fn effects_beside_law(&mut self, size: usize) -> Stage {
         if !self.seeks_laws_beside_effects() || size > self.task.max_effects {
             return self.law_elimination();
         }
-        let branch = |(effects, choice): &(Vec<usize>, f64)| {
-            let branch = self.branch(effects.clone(), self.further_effects(effects), &QUICK)?;
+        let branch = |(rank, (effects, choice)): (usize, &(Vec<usize>, f64))| {
+            let depth = if rank == 0 { &QUICK } else { &GLANCE };
+            let branch = self.branch(effects.clone(), self.further_effects(effects), depth)?;
             Some(branch.with_choice(*choice))
         };
-        let branches: Vec<SearchBranch> = self.sets_with_law(size).iter().filter_map(branch).collect();
+        let sets = self.sets_with_law(size);
+        let branches: Vec<SearchBranch> = sets.iter().enumerate().filter_map(branch).collect();
         Stage::EffectsBesideLaw(size, branches)
     }
 
