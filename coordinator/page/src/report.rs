@@ -66,7 +66,7 @@ pub fn report(report: &Report) -> String {
         let comma = if place == 0 { "" } else { "," };
         line(&format!(
             "{comma}{}:{}",
-            Value::from(path.as_str()),
+            embedded(&Value::from(path.as_str()).to_string()),
             embedded(answer.get())
         ));
     }

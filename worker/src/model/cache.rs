@@ -27,7 +27,7 @@ struct CachedVariant {
 }
 
 impl VariantCache {
-    /// The maximum number of variants: a round of a search needs hundreds, and the next round almost the same ones.
+    /// The maximum number of variants: a round of a search needs at most some 400, and the next round almost the same ones.
     pub const MAX_VARIANTS: usize = 512;
     /// The maximum total length of the texts of the variants, unless there is a single variant.
     pub const MAX_BYTES: usize = 64 << 20;

@@ -10,8 +10,8 @@ pub(crate) struct Depth {
     pub(crate) screen: ScreenDepth,
     pub(crate) extension: ExtensionDepth,
     pub(crate) refinement: RefinementDepth,
-    /// A candidate whose screened or fitted log Bayes factor lies this far below the best, and below a quarter of it, is neither fitted nor
-    /// refined \[nats\]: the screen is linear and may find too little, but rarely a quarter of the right value. `None`: every candidate may be.
+    /// A candidate whose log Bayes factor, by screen and fit, lies further below that of the best fit, and below a quarter of it, is neither
+    /// fitted nor refined \[nats\]; before the first fits, that of the best screen counts. `None`: every candidate may be.
     pub(crate) within: Option<f64>,
     /// `None`: the search ends with the refinement.
     pub(crate) confirmation: Option<ConfirmationDepth>,
@@ -235,7 +235,7 @@ const SPARING_QUICK: Depth = Depth {
     ..SPARING
 };
 
-/// A further effect beyond one of the lower ranks of a wide beam, by a shorter screen.
+/// A further effect beyond a set of a lower rank, in a wide beam or beside a law, by a shorter screen.
 pub(crate) const GLANCE: Depth = Depth {
     screen: ScreenDepth {
         strengths: &[1.0, 0.3],
@@ -286,7 +286,15 @@ impl Depth {
         }
     }
 
-    /// Returns the depth of the search for the form of a law.
+    /// Returns the depth of the search for curve and form of one law beside effects.
+    pub(crate) fn of_law(smoothness: Smoothness) -> &'static Self {
+        match smoothness {
+            Smoothness::Smooth => &ONE_LAW,
+            Smoothness::Rough | Smoothness::Unknown => &SPARING_FORMS,
+        }
+    }
+
+    /// Returns the depth of the search for the forms of the best laws.
     pub(crate) fn of_forms(smoothness: Smoothness) -> &'static Self {
         match smoothness {
             Smoothness::Smooth => &FORMS,
@@ -318,6 +326,12 @@ const FORMS: Depth = Depth {
     ..FULL
 };
 
+/// Curve and forms of one law. Without a fit of its curve a law is not kept.
+const ONE_LAW: Depth = Depth {
+    within: None,
+    ..FORMS
+};
+
 /// Simple forms of the laws of a rough model.
 const SPARING_FORMS: Depth = Depth {
     screen: ScreenDepth {
@@ -329,6 +343,7 @@ const SPARING_FORMS: Depth = Depth {
         ..FORMS.extension
     },
     refinement: SPARING_QUICK.refinement,
+    within: None,
     ..FORMS
 };
 

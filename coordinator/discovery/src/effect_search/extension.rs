@@ -3,7 +3,7 @@
 use crate::effect_search::depth::ExtensionDepth;
 use crate::effect_search::ranking::EvidenceMethod;
 use crate::effect_search::screen_result::Screened;
-use crate::effect_search::state::{EffectSearch, FitPhase, Phase};
+use crate::effect_search::state::{CandidateState, EffectSearch, FitPhase, Phase};
 use crate::laplace::batch::FitBatch;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::correction::quotient;
@@ -12,6 +12,7 @@ use crate::laplace::noise;
 use crate::laplace::point::FitPoint;
 use crate::laplace::quadratic::quadratic;
 use crate::laplace::reduced_discrepancy::reduced_discrepancy;
+use crate::probability::DETECTED;
 use crate::settings::Smoothness;
 use statistics::likelihood::Likelihood;
 
@@ -93,12 +94,13 @@ impl EffectSearch {
     /// Fits the best candidates of the screen, each with the base. Those that only the low-fidelity model has screened are
     /// screened on the model first.
     pub(super) fn begin_extensions(&mut self) {
-        let best = self.near_best(self.depth.extension.max_count).into_iter();
-        let (awaiting, candidates): (Vec<usize>, Vec<usize>) = best
-            .filter(|k| self.fit_of(*k).is_none())
-            .partition(|k| self.awaits_model(*k));
+        let (awaiting, candidates): (Vec<usize>, Vec<usize>) =
+            self.unfitted().into_iter().partition(|k| self.awaits_model(*k));
         if !awaiting.is_empty() {
             return self.screen(0, awaiting);
+        }
+        for &k in &candidates {
+            self.candidates[k].had_extension = true;
         }
         // The evaluations of a rough model are too expensive for fitting twice.
         let is_smooth = self.base_frame.smoothness == Smoothness::Smooth;
@@ -113,6 +115,20 @@ impl EffectSearch {
                 self.fit(FitPhase::Extensions, FitBatch::new(fits));
             }
         }
+    }
+
+    /// Returns the best candidates that are not fitted yet, as many as may be.
+    fn unfitted(&self) -> Vec<usize> {
+        let max_count = self.depth.extension.max_count;
+        let begun = self.candidates.iter().filter(|state| state.had_extension);
+        let room = match self.depth.within {
+            Some(_) => max_count.saturating_sub(begun.count()),
+            None => max_count,
+        };
+        let mut unfitted = self.near_best(max_count);
+        unfitted.retain(|k| !self.candidates[*k].had_extension && self.fit_of(*k).is_none());
+        unfitted.truncate(room);
+        unfitted
     }
 
     /// Fits with a reduced discrepancy; the fits with the whole of it begin at these modes.
@@ -134,27 +150,27 @@ impl EffectSearch {
         self.fit(FitPhase::Extensions, batch);
     }
 
-    /// Returns the best candidates whose fit began at the mode of a reduced discrepancy and falls short of the screen's promise: a fit
-    /// from the screen's point may be better.
-    fn short_of_screen(&self) -> Vec<usize> {
-        let base = self
-            .base
-            .as_ref()
-            .filter(|_| self.smoothness() == Smoothness::Smooth);
+    /// Returns the candidates whose fit began at the mode of a reduced discrepancy and falls short of the screen's promise: a fit from the
+    /// screen's point may be better.
+    pub(super) fn short_of_screen(&self) -> Vec<usize> {
+        let base = self.base.as_ref();
+        let base = base.filter(|_| self.base_frame.smoothness == Smoothness::Smooth);
         if base.is_none_or(|base| reduced_discrepancy(&self.likelihood, &base.fit).is_none()) {
             return Vec::new();
         }
-        let is_short = |k: &usize| {
-            let state = &self.candidates[*k];
+        let is_short = |state: &CandidateState| {
+            let promise = state.screened.as_ref().map(|screened| screened.log_bayes_factor);
+            let promise = promise.filter(|promise| state.had_extension && *promise > DETECTED);
             let fitted = state.estimate.as_ref().filter(|estimate| estimate.fit.is_some());
-            let screened = state.screened.as_ref();
-            screened.zip(fitted).is_none_or(|(screened, fitted)| {
-                fitted.log_bayes_factor < screened.log_bayes_factor - MAX_SHORTFALL
+            promise.is_some_and(|promise| {
+                fitted.is_none_or(|fitted| fitted.log_bayes_factor < promise - MAX_SHORTFALL)
             })
         };
-        let mut best = self.near_best(self.depth.extension.max_count);
-        best.retain(is_short);
-        best
+        let states = self.candidates.iter().enumerate();
+        states
+            .filter(|(_, state)| is_short(state))
+            .map(|(k, _)| k)
+            .collect()
     }
 
     /// Fits of candidates that begin at the screen's results.
@@ -173,10 +189,15 @@ impl EffectSearch {
         fits.collect()
     }
 
-    /// Keeps the fits of the best candidates, and fits the candidates within reach of the best.
+    /// Keeps the fits of the best candidates, and fits those that the fits of the first leave near the best; then the candidates within
+    /// reach of the best, and once more those that fell short of the screen's promise.
     pub(super) fn take_extensions(&mut self, batch: FitBatch) {
         self.evaluations.extension += batch.evaluations();
         self.take(batch, EvidenceMethod::RankOne);
+        // The best of the screen may have promised too much.
+        if self.depth.within.is_some() && !self.unfitted().is_empty() {
+            return self.begin_extensions();
+        }
         let mut near = self.within_reach();
         let awaiting: Vec<usize> = near.iter().copied().filter(|k| self.awaits_model(*k)).collect();
         if !awaiting.is_empty() {

@@ -21,15 +21,15 @@ const MIN_VISIBLE: f64 = 2.0;
 /// The log Bayes factor of a fit that is not confirmed counts as at most this much less than the screened one \[nats\].
 const MAX_DEFICIT: f64 = 3.0;
 
+/// The linear screen finds at least this share of a log Bayes factor, with rare exceptions.
+const MIN_SCREENED_SHARE: f64 = 0.25;
+
 /// The changes of the candidates after projection out of those that the base absorbs.
 pub(super) struct Projected {
     /// Length of the change by one prior standard deviation of the strength, in standard deviations of the noise.
     lengths: BTreeMap<usize, f64>,
     pub(super) classes: BTreeMap<usize, usize>,
 }
-
-/// The share of its log Bayes factor that the linear screen finds, nearly always.
-const QUARTER: f64 = 0.25;
 
 impl EffectSearch {
     /// Keeps the most probable fit of each candidate.
@@ -109,11 +109,16 @@ impl EffectSearch {
         self.promises().into_iter().take(count).map(|(k, _)| k).collect()
     }
 
-    /// Returns the candidates with the highest Bayes factors, without those that the depth of the search leaves out.
+    /// Returns the candidates with the highest Bayes factors, without those that the depth of the search leaves out. The best fit is the
+    /// measure once there is one: the screen may promise far more than a fit keeps.
     pub(super) fn near_best(&self, count: usize) -> Vec<usize> {
         let mut promises = self.promises();
-        if let (Some(within), Some(&(_, best))) = (self.depth.within, promises.first()) {
-            promises.retain(|(_, promise)| *promise >= (best - within).min(QUARTER * best));
+        let fitted = self.candidates.iter().filter_map(|state| state.estimate.as_ref());
+        let fitted = fitted.filter(|estimate| estimate.fit.is_some());
+        let best = fitted.map(|estimate| estimate.log_bayes_factor).reduce(f64::max);
+        let best = best.or(promises.first().map(|(_, promise)| *promise));
+        if let (Some(within), Some(best)) = (self.depth.within, best) {
+            promises.retain(|(_, promise)| *promise >= (best - within).min(MIN_SCREENED_SHARE * best));
         }
         promises.into_iter().take(count).map(|(k, _)| k).collect()
     }
@@ -400,7 +405,9 @@ mod tests {
     use crate::candidate::Candidate;
     use crate::effect_search::depth::QUICK;
     use crate::settings::SearchSettings;
-    use statistics::likelihood::{Datum, ErrorSd, Likelihood};
+    use statistics::likelihood::{
+        CommonError, CommonErrorSize, Datum, Discrepancy, ErrorLaw, ErrorSd, Likelihood,
+    };
     use statistics::prior::{Distribution, Marginal, Prior};
 
     const DATA: usize = 12;
@@ -420,6 +427,10 @@ mod tests {
     }
 
     fn searched() -> EffectSearch {
+        searched_with(Discrepancy::None)
+    }
+
+    fn searched_with(discrepancy: Discrepancy) -> EffectSearch {
         let normal = || Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
         let candidate = |name: &str| Candidate::new(name, vec![normal()], vec![0]);
         let clean = predicted(&[0.2, -0.4, 0.9], Some(0));
@@ -431,7 +442,15 @@ mod tests {
         };
         let data = clean.into_iter().enumerate().map(datum).collect();
         let prior = Prior::new(vec![normal(), normal()]);
-        let likelihood = Likelihood::new(data).unwrap();
+        let common = |i: usize| CommonError {
+            data: vec![i],
+            size: CommonErrorSize::Discrepancy { group: 0 },
+        };
+        let (common, discrepancies) = match discrepancy {
+            Discrepancy::None => (Vec::new(), Vec::new()),
+            unknown => ((0..DATA).map(common).collect(), vec![unknown]),
+        };
+        let likelihood = Likelihood::with_common(data, ErrorLaw::Gaussian, common, discrepancies).unwrap();
         let candidates = ["one", "other"].map(candidate);
         let mut search =
             EffectSearch::new(&prior, likelihood, &candidates, &SearchSettings::default()).unwrap();
@@ -443,6 +462,47 @@ mod tests {
             }
         }
         search
+    }
+
+    #[test]
+    fn a_fit_short_of_the_screen_is_followed_by_a_second_one_and_the_better_counts() {
+        let mut search = searched_with(Discrepancy::Unknown);
+        let best = search.best(1)[0];
+        let fitted = search.candidates[best].estimate.clone().unwrap();
+        let mut promise = |nats: f64| {
+            search.candidates[best]
+                .screened
+                .as_mut()
+                .unwrap()
+                .log_bayes_factor = nats;
+            search.short_of_screen().contains(&best)
+        };
+        let factor = fitted.log_bayes_factor.max(DETECTED);
+        assert!(!promise(factor) && promise(factor + 1.5));
+        assert!(
+            searched().short_of_screen().is_empty(),
+            "without a discrepancy the first fit began there"
+        );
+        let mut worse = fitted.fit.clone().unwrap();
+        worse.point.value += 1.0;
+        search.take_within_reach(FitBatch::new(vec![(Some(best), worse)]));
+        let kept = search.candidates[best].estimate.as_ref().unwrap();
+        assert!((kept.log_bayes_factor - fitted.log_bayes_factor).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_best_fit_is_the_measure_of_who_is_near() {
+        let mut search = searched();
+        let best = search.best(1)[0];
+        search.depth = &QUICK;
+        // The screen promises 130 nats of a candidate, and its fit keeps 5.
+        for (k, screened, fitted) in [(best, 130.0, 5.0), (1 - best, 20.0, 30.0)] {
+            let state = &mut search.candidates[k];
+            state.estimate.as_mut().unwrap().method = EvidenceMethod::RankOne;
+            state.screened.as_mut().unwrap().log_bayes_factor = screened;
+            state.estimate.as_mut().unwrap().log_bayes_factor = fitted;
+        }
+        assert_eq!(search.near_best(2).len(), 2);
     }
 
     #[test]

@@ -55,6 +55,8 @@ pub(super) struct CandidateState {
     pub(super) low_fidelity: Option<Screened>,
     pub(super) is_screened_on_model: bool,
     pub(super) estimate: Option<EvidenceEstimate>,
+    /// Whether a fit with the base has begun.
+    pub(super) had_extension: bool,
     /// Whether it was fitted from several starts, or the model refused all of them.
     pub(super) had_confirmation: bool,
     /// Evaluations spent on it alone.
@@ -77,7 +79,7 @@ pub(super) enum FitPhase {
     Base,
     /// The best candidates of the screen.
     Extensions,
-    /// Further candidates, within reach of the best.
+    /// Further candidates, within reach of the best, and second fits of those that fell short of the screen's promise.
     WithinReach,
     Refinement,
     Confirmation,
@@ -132,6 +134,7 @@ impl EffectSearch {
             low_fidelity: None,
             is_screened_on_model: false,
             estimate: None,
+            had_extension: false,
             had_confirmation: false,
             evaluations: 0,
         });

@@ -97,7 +97,7 @@ impl SearchState {
             let beyond = self.hypotheses.of_set(&effects).filter(|_| !is_fitted)?;
             let mut candidates = vec![self.task.curve(law)];
             candidates.extend(self.task.forms(law));
-            let depth = Depth::of_forms(self.task.settings.smoothness);
+            let depth = Depth::of_law(self.task.settings.smoothness);
             Some((law, self.branch(beyond.effects.clone(), candidates, depth)?))
         });
         match unfitted {
