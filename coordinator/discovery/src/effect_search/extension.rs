@@ -3,7 +3,7 @@
 use crate::effect_search::depth::ExtensionDepth;
 use crate::effect_search::ranking::EvidenceMethod;
 use crate::effect_search::screen_result::Screened;
-use crate::effect_search::state::{CandidateState, EffectSearch, FitPhase, Phase};
+use crate::effect_search::state::{EffectSearch, FitPhase, Phase};
 use crate::laplace::batch::FitBatch;
 use crate::laplace::coordinate::NormalFrame;
 use crate::laplace::correction::quotient;
@@ -12,13 +12,8 @@ use crate::laplace::noise;
 use crate::laplace::point::FitPoint;
 use crate::laplace::quadratic::quadratic;
 use crate::laplace::reduced_discrepancy::reduced_discrepancy;
-use crate::probability::DETECTED;
 use crate::settings::Smoothness;
 use statistics::likelihood::Likelihood;
-
-/// A fit from the mode of a reduced discrepancy that falls short of the screen's log Bayes factor by more is followed by one from the
-/// screen's point \[nats\].
-const MAX_SHORTFALL: f64 = 1.0;
 
 /// Begins a fit at the base's fit or at the screen's point, whichever is more probable; a switch begins at the screen's point.
 fn fit(
@@ -131,7 +126,7 @@ impl EffectSearch {
         unfitted
     }
 
-    /// Fits with a reduced discrepancy; the fits with the whole of it begin at these modes.
+    /// Fits with a reduced discrepancy; the fits with the whole of it begin at the screen's points and, once more, at these modes.
     pub(super) fn fit_reduced_discrepancy(&mut self, reduced: Likelihood, mut batch: FitBatch) {
         let requests = batch.ask(&reduced);
         if !requests.is_empty() {
@@ -140,37 +135,15 @@ impl EffectSearch {
             return;
         }
         self.evaluations.extension += batch.evaluations();
-        let fits = batch.fits.into_iter().filter_map(|(candidate, fit)| {
+        let candidates = batch.fits.iter().filter_map(|(candidate, _)| *candidate);
+        let mut fits = self.extension_fits(candidates.collect(), &self.likelihood);
+        fits.extend(batch.fits.into_iter().filter_map(|(candidate, fit)| {
             let FitPoint { position, values, .. } = fit.point;
             let point = FitPoint::new(&fit.frame, &self.likelihood, position, values)?;
             let plan = self.depth.extension.plan;
             Some((candidate, LaplaceFit::new(fit.frame, point, fit.columns, plan)))
-        });
-        let batch = FitBatch::new(fits.collect());
-        self.fit(FitPhase::Extensions, batch);
-    }
-
-    /// Returns the candidates whose fit began at the mode of a reduced discrepancy and falls short of the screen's promise: a fit from the
-    /// screen's point may be better.
-    pub(super) fn short_of_screen(&self) -> Vec<usize> {
-        let base = self.base.as_ref();
-        let base = base.filter(|_| self.base_frame.smoothness == Smoothness::Smooth);
-        if base.is_none_or(|base| reduced_discrepancy(&self.likelihood, &base.fit).is_none()) {
-            return Vec::new();
-        }
-        let is_short = |state: &CandidateState| {
-            let promise = state.screened.as_ref().map(|screened| screened.log_bayes_factor);
-            let promise = promise.filter(|promise| state.had_extension && *promise > DETECTED);
-            let fitted = state.estimate.as_ref().filter(|estimate| estimate.fit.is_some());
-            promise.is_some_and(|promise| {
-                fitted.is_none_or(|fitted| fitted.log_bayes_factor < promise - MAX_SHORTFALL)
-            })
-        };
-        let states = self.candidates.iter().enumerate();
-        states
-            .filter(|(_, state)| is_short(state))
-            .map(|(k, _)| k)
-            .collect()
+        }));
+        self.fit(FitPhase::Extensions, FitBatch::new(fits));
     }
 
     /// Fits of candidates that begin at the screen's results.
@@ -190,7 +163,7 @@ impl EffectSearch {
     }
 
     /// Keeps the fits of the best candidates, and fits those that the fits of the first leave near the best; then the candidates within
-    /// reach of the best, and once more those that fell short of the screen's promise.
+    /// reach of the best.
     pub(super) fn take_extensions(&mut self, batch: FitBatch) {
         self.evaluations.extension += batch.evaluations();
         self.take(batch, EvidenceMethod::RankOne);
@@ -198,23 +171,18 @@ impl EffectSearch {
         if self.depth.within.is_some() && !self.unfitted().is_empty() {
             return self.begin_extensions();
         }
-        let mut near = self.within_reach();
+        let near = self.within_reach();
         let awaiting: Vec<usize> = near.iter().copied().filter(|k| self.awaits_model(*k)).collect();
         if !awaiting.is_empty() {
             return self.screen(0, awaiting);
         }
-        near.extend(self.short_of_screen());
         let fits = self.extension_fits(near, &self.likelihood);
         self.fit(FitPhase::WithinReach, FitBatch::new(fits));
     }
 
-    /// Keeps the fits of the candidates within reach, and the better of two fits of a candidate, and refines the best of all.
-    pub(super) fn take_within_reach(&mut self, mut batch: FitBatch) {
+    /// Keeps the fits of the candidates within reach, and refines the best of all.
+    pub(super) fn take_within_reach(&mut self, batch: FitBatch) {
         self.evaluations.extension += batch.evaluations();
-        let earlier = |k: &Option<usize>| k.and_then(|k| self.fit_of(k));
-        batch
-            .fits
-            .retain(|(k, fit)| earlier(k).is_none_or(|earlier| fit.point.value < earlier.point.value));
         self.take(batch, EvidenceMethod::RankOne);
         let depth = &self.depth.refinement;
         let fits = self

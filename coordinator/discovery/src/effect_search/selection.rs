@@ -405,9 +405,7 @@ mod tests {
     use crate::candidate::Candidate;
     use crate::effect_search::depth::QUICK;
     use crate::settings::SearchSettings;
-    use statistics::likelihood::{
-        CommonError, CommonErrorSize, Datum, Discrepancy, ErrorLaw, ErrorSd, Likelihood,
-    };
+    use statistics::likelihood::{Datum, ErrorSd, Likelihood};
     use statistics::prior::{Distribution, Marginal, Prior};
 
     const DATA: usize = 12;
@@ -427,10 +425,6 @@ mod tests {
     }
 
     fn searched() -> EffectSearch {
-        searched_with(Discrepancy::None)
-    }
-
-    fn searched_with(discrepancy: Discrepancy) -> EffectSearch {
         let normal = || Marginal::new(Distribution::Normal { mean: 0.0, sd: 1.0 }, None).unwrap();
         let candidate = |name: &str| Candidate::new(name, vec![normal()], vec![0]);
         let clean = predicted(&[0.2, -0.4, 0.9], Some(0));
@@ -442,15 +436,7 @@ mod tests {
         };
         let data = clean.into_iter().enumerate().map(datum).collect();
         let prior = Prior::new(vec![normal(), normal()]);
-        let common = |i: usize| CommonError {
-            data: vec![i],
-            size: CommonErrorSize::Discrepancy { group: 0 },
-        };
-        let (common, discrepancies) = match discrepancy {
-            Discrepancy::None => (Vec::new(), Vec::new()),
-            unknown => ((0..DATA).map(common).collect(), vec![unknown]),
-        };
-        let likelihood = Likelihood::with_common(data, ErrorLaw::Gaussian, common, discrepancies).unwrap();
+        let likelihood = Likelihood::new(data).unwrap();
         let candidates = ["one", "other"].map(candidate);
         let mut search =
             EffectSearch::new(&prior, likelihood, &candidates, &SearchSettings::default()).unwrap();
@@ -462,32 +448,6 @@ mod tests {
             }
         }
         search
-    }
-
-    #[test]
-    fn a_fit_short_of_the_screen_is_followed_by_a_second_one_and_the_better_counts() {
-        let mut search = searched_with(Discrepancy::Unknown);
-        let best = search.best(1)[0];
-        let fitted = search.candidates[best].estimate.clone().unwrap();
-        let mut promise = |nats: f64| {
-            search.candidates[best]
-                .screened
-                .as_mut()
-                .unwrap()
-                .log_bayes_factor = nats;
-            search.short_of_screen().contains(&best)
-        };
-        let factor = fitted.log_bayes_factor.max(DETECTED);
-        assert!(!promise(factor) && promise(factor + 1.5));
-        assert!(
-            searched().short_of_screen().is_empty(),
-            "without a discrepancy the first fit began there"
-        );
-        let mut worse = fitted.fit.clone().unwrap();
-        worse.point.value += 1.0;
-        search.take_within_reach(FitBatch::new(vec![(Some(best), worse)]));
-        let kept = search.candidates[best].estimate.as_ref().unwrap();
-        assert!((kept.log_bayes_factor - fitted.log_bayes_factor).abs() < 1e-12);
     }
 
     #[test]

@@ -79,7 +79,7 @@ pub(super) enum FitPhase {
     Base,
     /// The best candidates of the screen.
     Extensions,
-    /// Further candidates, within reach of the best, and second fits of those that fell short of the screen's promise.
+    /// Further candidates, within reach of the best.
     WithinReach,
     Refinement,
     Confirmation,
