@@ -13,7 +13,8 @@
 //!    screened on the model.
 //! 3. **Extensions** (`extension`). The best candidates are fitted together with the base, by Gauss-Newton steps with Broyden's
 //!    update of the Jacobian. With an unknown discrepancy and a smooth model, a fit with a reduced discrepancy precedes.
-//!    Beyond a combination, candidates far below the best are left out. Candidates whose screened log Bayes factor exceeds a share of the best one are fitted next.
+//!    Candidates whose screened log Bayes factor exceeds a share of the best one are fitted next; beyond a combination, those far below the
+//!    best are left out.
 //! 4. **Refinement** (`refinement`). The best few are fitted again with new derivatives.
 //! 5. **Confirmation** (`confirmation`). The best, and all near them, are fitted from several starts. Where Laplace's
 //!    approximation is uncertain, importance sampling replaces it (`sampling`). The ranking with classes and probabilities ends
