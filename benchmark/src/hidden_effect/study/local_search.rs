@@ -63,12 +63,12 @@ impl LocalSearch {
         // Conditions have a density only if an effect of the variant needs it. The predicted runs take the order of the first run.
         let first = variant.conditions.first();
         let (density_kg_m3, order) = (first.and_then(|c| c.density_kg_m3), first.and_then(|c| c.order));
-        let predicted = |condition: &RunCondition| RunCondition {
+        let condition = |condition: &RunCondition| RunCondition {
             density_kg_m3,
             order,
             ..condition.clone()
         };
-        variant.conditions = conditions.iter().map(predicted).collect();
+        variant.conditions = conditions.iter().map(condition).collect();
         let evaluate = Evaluate::new(&variant)?;
         let predicted = thetas.iter().map(|theta| {
             match evaluate.evaluate(&self.models.model_theta(&query(theta), &variant)) {

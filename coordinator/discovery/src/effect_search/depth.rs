@@ -122,6 +122,9 @@ const THOROUGH: Confirmation = Confirmation {
     keeps_jacobian: false,
 };
 
+/// The linear screen finds at least this share of a log Bayes factor, with rare exceptions.
+pub(crate) const MIN_SCREENED_SHARE: f64 = 0.25;
+
 /// All candidates of a smooth model are fitted, and the best are confirmed.
 pub(crate) const FULL: Depth = Depth {
     base: BaseDepth {
@@ -169,7 +172,7 @@ const SPARING: Depth = Depth {
     },
     extension: ExtensionDepth {
         max_count: 8,
-        reach: Some(0.25),
+        reach: Some(MIN_SCREENED_SHARE),
         plan: &[FitStep::Trials(6)],
         ..FULL.extension
     },

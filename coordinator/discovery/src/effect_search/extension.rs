@@ -121,7 +121,7 @@ impl EffectSearch {
             None => max_count,
         };
         let mut unfitted = self.near_best(max_count);
-        unfitted.retain(|k| !self.candidates[*k].had_extension && self.fit_of(*k).is_none());
+        unfitted.retain(|k| !self.candidates[*k].had_extension);
         unfitted.truncate(room);
         unfitted
     }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::chi_square::FitChiSquare;
 use crate::effect_search::class::{classes, log_bayes_factor_deficit};
 use crate::effect_search::confirmation;
+use crate::effect_search::depth::MIN_SCREENED_SHARE;
 use crate::effect_search::extension;
 use crate::effect_search::projection::Projection;
 use crate::effect_search::ranking::{EffectRanking, EvidenceMethod, RankedEffect};
@@ -20,9 +21,6 @@ use crate::settings::Smoothness;
 const MIN_VISIBLE: f64 = 2.0;
 /// The log Bayes factor of a fit that is not confirmed counts as at most this much less than the screened one \[nats\].
 const MAX_DEFICIT: f64 = 3.0;
-
-/// The linear screen finds at least this share of a log Bayes factor, with rare exceptions.
-const MIN_SCREENED_SHARE: f64 = 0.25;
 
 /// The changes of the candidates after projection out of those that the base absorbs.
 pub(super) struct Projected {
@@ -113,9 +111,7 @@ impl EffectSearch {
     /// measure once there is one: the screen may promise far more than a fit keeps.
     pub(super) fn near_best(&self, count: usize) -> Vec<usize> {
         let mut promises = self.promises();
-        let fitted = self.candidates.iter().filter_map(|state| state.estimate.as_ref());
-        let fitted = fitted.filter(|estimate| estimate.fit.is_some());
-        let best = fitted.map(|estimate| estimate.log_bayes_factor).reduce(f64::max);
+        let best = self.best_fitted();
         let best = best.or(promises.first().map(|(_, promise)| *promise));
         if let (Some(within), Some(best)) = (self.depth.within, best) {
             promises.retain(|(_, promise)| *promise >= (best - within).min(MIN_SCREENED_SHARE * best));
@@ -123,23 +119,23 @@ impl EffectSearch {
         promises.into_iter().take(count).map(|(k, _)| k).collect()
     }
 
+    /// Returns the highest log Bayes factor of a fit; `None` before the first.
+    fn best_fitted(&self) -> Option<f64> {
+        let fitted = (0..self.candidates.len()).filter(|k| self.fit_of(*k).is_some());
+        fitted
+            .filter_map(|k| self.log_bayes_factor_of(k))
+            .reduce(f64::max)
+    }
+
     /// Returns candidates that were only screened and whose log Bayes factor is not far below that of the best fit.
     pub(super) fn within_reach(&self) -> Vec<usize> {
-        let is_fitted = |k: usize| self.fit_of(k).is_some();
-        let log_bayes_factor = |k: usize| {
-            self.candidates[k]
-                .estimate
-                .as_ref()
-                .map(|estimate| estimate.log_bayes_factor)
-        };
-        let fitted = (0..self.candidates.len()).filter(|k| is_fitted(*k));
         // Where nothing is detected, what may still be detected is within reach.
-        let best = fitted.filter_map(log_bayes_factor).fold(DETECTED, f64::max);
+        let best = self.best_fitted().unwrap_or(DETECTED).max(DETECTED);
         let Some(share) = self.depth.extension.reach else {
             return Vec::new();
         };
         let promises = self.promises().into_iter();
-        let near = promises.filter(|(k, promise)| !is_fitted(*k) && *promise > share * best);
+        let near = promises.filter(|(k, promise)| self.fit_of(*k).is_none() && *promise > share * best);
         near.map(|(k, _)| k).collect()
     }
 
@@ -450,6 +446,13 @@ mod tests {
         search
     }
 
+    /// Gives a candidate a log Bayes factor by its screen and by its fit.
+    fn rate(search: &mut EffectSearch, k: usize, screened: f64, fitted: f64) {
+        let state = &mut search.candidates[k];
+        state.screened.as_mut().unwrap().log_bayes_factor = screened;
+        state.estimate.as_mut().unwrap().log_bayes_factor = fitted;
+    }
+
     #[test]
     fn the_best_fit_is_the_measure_of_who_is_near() {
         let mut search = searched();
@@ -457,10 +460,8 @@ mod tests {
         search.depth = &QUICK;
         // The screen promises 130 nats of a candidate, and its fit keeps 5.
         for (k, screened, fitted) in [(best, 130.0, 5.0), (1 - best, 20.0, 30.0)] {
-            let state = &mut search.candidates[k];
-            state.estimate.as_mut().unwrap().method = EvidenceMethod::RankOne;
-            state.screened.as_mut().unwrap().log_bayes_factor = screened;
-            state.estimate.as_mut().unwrap().log_bayes_factor = fitted;
+            rate(&mut search, k, screened, fitted);
+            search.candidates[k].estimate.as_mut().unwrap().method = EvidenceMethod::RankOne;
         }
         assert_eq!(search.near_best(2).len(), 2);
     }
@@ -472,9 +473,7 @@ mod tests {
         let mut count = |factors: [f64; 2], depth| {
             search.depth = depth;
             for (k, factor) in [(best, factors[0]), (1 - best, factors[1])] {
-                let state = &mut search.candidates[k];
-                state.screened.as_mut().unwrap().log_bayes_factor = factor;
-                state.estimate.as_mut().unwrap().log_bayes_factor = factor;
+                rate(&mut search, k, factor, factor);
             }
             search.near_best(2).len()
         };
@@ -482,16 +481,7 @@ mod tests {
         let counts = [[40.0, 9.0], [9.0, 1.5], [40.0, 11.0]].map(|factors| count(factors, &QUICK));
         assert_eq!(counts, [1, 2, 2]);
         let mut every = searched();
-        every.candidates[1 - best]
-            .estimate
-            .as_mut()
-            .unwrap()
-            .log_bayes_factor = -40.0;
-        every.candidates[1 - best]
-            .screened
-            .as_mut()
-            .unwrap()
-            .log_bayes_factor = -40.0;
+        rate(&mut every, 1 - best, -40.0, -40.0);
         assert_eq!(
             every.near_best(2).len(),
             2,
